@@ -1,0 +1,2 @@
+//! gz-app as a library, for the tests package.
+#![forbid(unsafe_code)]

@@ -1,0 +1,51 @@
+//! The lowest layer of the Gz ray tracer: coordinates, triangles, rays, cameras, and one question asked exactly.
+//!
+//! The question is [`RayQuery`]: *which triangle does this ray hit first?* Its answer is the one that exact arithmetic gives on
+//! the stored numbers, so every implementation of it gives the same bits. [`BruteForce`] is the specification.
+//!
+//! ```
+//! use gz_core::{BruteForce, GzCoord, GzRay, RayQuery, TriBuffer};
+//!
+//! let corners = [[0.0, 0.0, 5.0], [4.0, 0.0, 5.0], [0.0, 4.0, 5.0]].map(GzCoord::from_array);
+//! let tris = TriBuffer::from_indexed(&corners, &[[0, 1, 2]])?;
+//! let brute = BruteForce::new(&tris);
+//!
+//! let ray = GzRay::new([1.0, 1.0, 0.0].into(), [0.0, 0.0, 1.0].into());
+//! let hit = brute.closest_hit(&ray);
+//! assert_eq!((hit.tri, hit.t), (0, 5.0));
+//! assert_eq!(ray.at(hit.t), [1.0, 1.0, 5.0].into());
+//! # Ok::<(), gz_core::TriError>(())
+//! ```
+#![deny(unsafe_code)]
+
+mod bounds;
+mod brute;
+mod camera;
+mod coord;
+mod hit;
+pub mod kernel;
+mod leave;
+mod matrix;
+mod pixel;
+mod query;
+mod ray;
+mod simd;
+mod stack;
+mod tile;
+mod tri;
+
+pub use bounds::Bounds;
+pub use brute::BruteForce;
+pub use camera::{CameraError, CameraModel, CameraSpec, GzCamera, PrimaryRays, View};
+pub use coord::{GzColor, GzCoord, GzTextureIndex};
+pub use glam;
+pub use hit::{Hit, NO_TRI, TriId};
+pub use kernel::Kernel;
+pub use leave::{leave_surface, side_of};
+pub use matrix::GzMatrix;
+pub use pixel::{GzPixel, TBuffer, TileScratch, trace_tile};
+pub use query::{ClassMask, PerRay, RayBatch, RayQuery};
+pub use ray::GzRay;
+pub use stack::{MatrixStack, StackError};
+pub use tile::{Tile, TileGrid};
+pub use tri::{Attributes, GzTri, MaterialId, TriBuffer, TriClass, TriError};

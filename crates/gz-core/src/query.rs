@@ -1,0 +1,159 @@
+//! The one question that everything above asks, in batches.
+
+use crate::{GzCoord, GzRay, Hit, TriBuffer, TriClass};
+use glam::DVec3;
+
+/// A property of the rays of a batch: the same for all, or one each.
+///
+/// What rays share lets an implementation share work: a common origin (primary rays), a common direction (one light's shadow rays).
+#[derive(Clone, Copy, Debug)]
+pub enum PerRay<'a, T> {
+    /// Every ray has this value.
+    One(T),
+    /// Ray `i` has value `i`; as long as the batch.
+    Each(&'a [T]),
+}
+
+impl<T: Copy> PerRay<'_, T> {
+    /// The value of ray `i`.
+    pub fn get(&self, i: usize) -> T {
+        match *self {
+            Self::One(value) => value,
+            Self::Each(values) => values[i],
+        }
+    }
+
+    /// The length that this property forces on a batch, if any.
+    fn forced_len(&self) -> Option<usize> {
+        match self {
+            Self::One(_) => None,
+            Self::Each(values) => Some(values.len()),
+        }
+    }
+}
+
+/// Rays asked about together, property by property: see [`GzRay`] for what each means.
+#[derive(Clone, Copy, Debug)]
+pub struct RayBatch<'a> {
+    len: usize,
+    /// Origins in trace space.
+    pub origin: PerRay<'a, DVec3>,
+    /// Directions in trace space.
+    pub direction: PerRay<'a, GzCoord>,
+    /// Lower ends of t, strict.
+    pub tmin: PerRay<'a, f32>,
+    /// Upper ends of t, strict.
+    pub tmax: PerRay<'a, f32>,
+}
+
+impl<'a> RayBatch<'a> {
+    /// A batch of `len` rays.
+    ///
+    /// # Panics
+    ///
+    /// If a property given per ray has another length than `len`.
+    pub fn new(
+        len: usize,
+        origin: PerRay<'a, DVec3>,
+        direction: PerRay<'a, GzCoord>,
+        tmin: PerRay<'a, f32>,
+        tmax: PerRay<'a, f32>,
+    ) -> Self {
+        for forced in [origin.forced_len(), direction.forced_len(), tmin.forced_len(), tmax.forced_len()] {
+            assert!(forced.is_none_or(|n| n == len), "every property of a batch of {len} rays is one or {len} values");
+        }
+        Self { len, origin, direction, tmin, tmax }
+    }
+
+    /// Rays with t in (0, infinity).
+    pub fn unbounded(len: usize, origin: PerRay<'a, DVec3>, direction: PerRay<'a, GzCoord>) -> Self {
+        Self::new(len, origin, direction, PerRay::One(0.0), PerRay::One(f32::INFINITY))
+    }
+
+    /// The number of rays.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is no ray.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Ray `i` by itself.
+    pub fn ray(&self, i: usize) -> GzRay {
+        GzRay { origin: self.origin.get(i), direction: self.direction.get(i), tmin: self.tmin.get(i), tmax: self.tmax.get(i) }
+    }
+}
+
+/// A set of triangle classes: a query sees only triangles whose class is in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClassMask(u8);
+
+impl ClassMask {
+    /// Every class.
+    pub const ALL: Self = Self(u8::MAX);
+    /// No class.
+    pub const NONE: Self = Self(0);
+
+    /// The set of one class.
+    pub const fn only(class: TriClass) -> Self {
+        Self(1 << class as u8)
+    }
+
+    /// Both sets together.
+    #[must_use]
+    pub const fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether `class` is in the set.
+    pub const fn has(self, class: TriClass) -> bool {
+        self.0 & (1 << class as u8) != 0
+    }
+}
+
+/// Which triangle does a ray hit first, and does it hit any?
+///
+/// The line of a ray meets a triangle when the signed volumes U, V, W of the line against its three edges are all at least 0 or all
+/// at most 0 and their sum D is not 0: triangles are closed and have two faces, a ray in the plane misses, a triangle without area
+/// is never hit. The hit lies at t = M / D and counts when `tmin < t < tmax`. The answer is the least (t, triangle number), t
+/// compared exactly; [`Hit::t`] is that t rounded once. Every implementation answers with these bits, whatever it skips.
+pub trait RayQuery: Sync {
+    /// The triangles asked about.
+    fn tris(&self) -> &TriBuffer;
+
+    /// The front-most hit of each ray among the triangles of `classes`, into `hits`.
+    ///
+    /// # Panics
+    ///
+    /// If `hits` is not as long as `rays`.
+    fn closest_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, hits: &mut [Hit]);
+
+    /// Whether each ray hits anything among the triangles of `classes`, into `occluded`.
+    ///
+    /// Equal to asking whether [`Self::closest_hits`] finds a hit.
+    ///
+    /// # Panics
+    ///
+    /// If `occluded` is not as long as `rays`.
+    fn any_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, occluded: &mut [bool]);
+
+    /// The front-most hit of one ray.
+    fn closest_hit(&self, ray: &GzRay) -> Hit {
+        let mut hit = [Hit::MISS];
+        self.closest_hits(&single(ray), ClassMask::ALL, &mut hit);
+        hit[0]
+    }
+
+    /// Whether one ray hits anything.
+    fn any_hit(&self, ray: &GzRay) -> bool {
+        let mut occluded = [false];
+        self.any_hits(&single(ray), ClassMask::ALL, &mut occluded);
+        occluded[0]
+    }
+}
+
+fn single(ray: &GzRay) -> RayBatch<'static> {
+    RayBatch::new(1, PerRay::One(ray.origin), PerRay::One(ray.direction), PerRay::One(ray.tmin), PerRay::One(ray.tmax))
+}

@@ -1,0 +1,3 @@
+//! The command gz.
+#![forbid(unsafe_code)]
+fn main() {}
