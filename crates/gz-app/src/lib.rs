@@ -1,2 +1,7 @@
-//! gz-app as a library, for the tests package.
+//! Scenes in, pictures out: the parts behind the command `gz`.
 #![forbid(unsafe_code)]
+
+pub mod error;
+pub mod load;
+pub mod mesh;
+pub mod teapot;
