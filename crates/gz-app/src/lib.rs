@@ -1,6 +1,7 @@
 //! Scenes in, pictures out: the parts behind the command `gz`.
 #![forbid(unsafe_code)]
 
+pub mod display;
 pub mod error;
 pub mod load;
 pub mod mesh;
