@@ -3,6 +3,7 @@
 
 pub mod display;
 pub mod error;
+pub mod homework;
 pub mod load;
 pub mod mesh;
 pub mod teapot;
