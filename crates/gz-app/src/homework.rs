@@ -12,8 +12,8 @@ use gz_core::{
 };
 use gz_shade::color::{course12_channel, course12_intensity};
 use gz_shade::{
-    Background, FrameStats, GzLight, Interpolate, LightKind, Material, MaterialKind, Scene, SceneNeeds, ShadeRules, Surface, Texture,
-    shade_frame,
+    Background, FrameStats, GzLight, Interpolate, LightKind, Material, MaterialKind, Scene, SceneNeeds, ShadeRules, Surface,
+    Texture, shade_frame,
 };
 use std::io::{self, Write};
 
@@ -265,9 +265,7 @@ impl GzRender {
             camera,
             lights: self.lights.clone(),
             ambient: self.ambient,
-            background: Background::Plain(
-                self.background.map(|c| course12_channel(u16::try_from(c).unwrap_or(0))).into(),
-            ),
+            background: Background::Plain(self.background.map(|c| course12_channel(u16::try_from(c).unwrap_or(0))).into()),
             used: if default_material.is_some() { vec![0] } else { self.used.clone() },
             materials: default_material.map_or_else(|| self.materials.clone(), |material| vec![material]),
             textures: self.textures.clone(),
