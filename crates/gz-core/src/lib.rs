@@ -46,6 +46,7 @@ pub use matrix::GzMatrix;
 pub use pixel::{GzPixel, TBuffer, TileScratch, trace_tile};
 pub use query::{ClassMask, PerRay, RayBatch, RayQuery};
 pub use ray::GzRay;
+pub use simd::SimdLevel;
 pub use stack::{MatrixStack, StackError};
 pub use tile::{Tile, TileGrid};
 pub use tri::{Attributes, GzTri, MaterialId, TriBuffer, TriClass, TriError};
