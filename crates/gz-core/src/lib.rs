@@ -46,7 +46,7 @@ pub use matrix::GzMatrix;
 pub use pixel::{GzPixel, TBuffer, TileScratch, trace_tile};
 pub use query::{ClassMask, PerRay, RayBatch, RayQuery};
 pub use ray::GzRay;
-pub use simd::SimdLevel;
+pub use simd::{SimdLevel, with_default_float_control};
 pub use stack::{MatrixStack, StackError};
 pub use tile::{Tile, TileGrid};
 pub use tri::{Attributes, GzTri, MaterialId, TriBuffer, TriClass, TriError};

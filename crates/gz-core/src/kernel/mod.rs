@@ -9,7 +9,7 @@ mod plane;
 
 pub use certify::hit_weights;
 pub(crate) use exact::side_sign;
-pub(crate) use order::{Closest, is_hit};
+pub use order::{Closest, is_hit};
 pub(crate) use plane::plane_then_inside;
 
 /// Which ray-triangle test answers a query.

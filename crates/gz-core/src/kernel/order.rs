@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 ///
 /// Only an interval of t is kept: two hits are told apart in f64 as long as their intervals do not touch, exactly otherwise.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Closest {
+pub struct Closest {
     best: Option<Candidate>,
 }
 
@@ -21,8 +21,8 @@ struct Candidate {
 }
 
 impl Closest {
-    /// Takes triangle `tri` into account. Order of calls and repeated calls do not show in the result.
-    pub(crate) fn consider(&mut self, ray: &GzRay, tri: TriId, positions: &[[GzCoord; 3]]) {
+    /// Takes triangle `tri` of `positions` into account for a valid `ray`. Order of calls and repeated calls do not show in the result.
+    pub fn consider(&mut self, ray: &GzRay, tri: TriId, positions: &[[GzCoord; 3]]) {
         let corners = &positions[tri as usize];
         let (lo, hi) = match certify(ray, corners) {
             Verdict::Miss => return,
@@ -48,8 +48,13 @@ impl Closest {
         }
     }
 
-    /// The answer: T-value and weights are formed only now.
-    pub(crate) fn hit(&self, ray: &GzRay, positions: &[[GzCoord; 3]]) -> Hit {
+    /// At least the exact t of the best hit so far; infinite when there is none. Nothing beyond it can be better.
+    pub fn distance(&self) -> f64 {
+        self.best.map_or(f64::INFINITY, |best| best.hi)
+    }
+
+    /// The answer to `ray`, the same as in all calls before: T-value and weights are formed only now.
+    pub fn hit(&self, ray: &GzRay, positions: &[[GzCoord; 3]]) -> Hit {
         self.best.map_or(Hit::MISS, |best| {
             let (t, u, v) = t_u_v(ray, &positions[best.tri as usize]);
             Hit { t, tri: best.tri, u, v }
@@ -58,7 +63,7 @@ impl Closest {
 }
 
 /// Whether a valid ray hits a triangle.
-pub(crate) fn is_hit(ray: &GzRay, corners: &[GzCoord; 3]) -> bool {
+pub fn is_hit(ray: &GzRay, corners: &[GzCoord; 3]) -> bool {
     match certify(ray, corners) {
         Verdict::Miss => false,
         Verdict::Hit { .. } => true,

@@ -3,7 +3,7 @@
 /// Runs `work` with round-to-nearest and without flushing of subnormal numbers, and gives the caller its own setting back.
 ///
 /// A host program may have set flush-to-zero; the error bounds of the certified test do not hold under it.
-pub(crate) fn with_default_float_control<T>(work: impl FnOnce() -> T) -> T {
+pub fn with_default_float_control<T>(work: impl FnOnce() -> T) -> T {
     let _restore = Control::set_default();
     work()
 }

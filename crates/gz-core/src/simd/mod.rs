@@ -5,7 +5,7 @@ mod control;
 
 use crate::TriId;
 use crate::kernel::filter::{Block, FilterRay, filter_body};
-pub(crate) use control::with_default_float_control;
+pub use control::with_default_float_control;
 use std::sync::OnceLock;
 
 /// A set of vector instructions that kernels are compiled for. Answers do not depend on it.
