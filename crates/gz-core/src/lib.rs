@@ -29,7 +29,7 @@ mod matrix;
 mod pixel;
 mod query;
 mod ray;
-mod simd;
+pub mod simd;
 mod stack;
 mod tile;
 mod tri;

@@ -39,19 +39,49 @@ pub(crate) struct Blocks {
 
 /// A ray as the filter sees it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FilterRay {
+pub struct FilterRay {
     /// Axes: the direction is largest along the last.
-    axes: [usize; 3],
-    origin: [f32; 3],
-    slope: [f32; 2],
-    delta: f32,
+    pub(super) axes: [usize; 3],
+    pub(super) origin: [f32; 3],
+    pub(super) slope: [f32; 2],
+    pub(super) delta: f32,
 }
 
 /// 2^60: squares of sheared coordinates beyond it could overflow, so the filter then lets everything through.
 const REACH: f32 = (1u64 << 60) as f32;
-const E: f32 = f32::EPSILON / 2.0;
+pub(super) const E: f32 = f32::EPSILON / 2.0;
 /// 2^-124.
-const FLOOR: f32 = f32::MIN_POSITIVE * 4.0;
+pub(super) const FLOOR: f32 = f32::MIN_POSITIVE * 4.0;
+
+impl FilterRay {
+    /// Prepares a valid `ray` for triangles whose coordinates are at most `scene_reach` in magnitude; `None` when coordinates are too
+    /// large for the filter's bound, 2^60 with the origin's added.
+    pub fn new(ray: &GzRay, scene_reach: f32) -> Option<Self> {
+        let d = ray.direction.as_dvec3().to_array();
+        let z = if d[0].abs() >= d[1].abs() && d[0].abs() >= d[2].abs() {
+            0
+        } else if d[1].abs() >= d[2].abs() {
+            1
+        } else {
+            2
+        };
+        let axes = [(z + 1) % 3, (z + 2) % 3, z];
+        let origin = ray.origin.to_array();
+        let reach_of_origin = origin.iter().fold(0f64, |m, x| m.max(x.abs()));
+        let reach = f64::from(scene_reach) + reach_of_origin;
+        if reach > f64::from(REACH) {
+            return None;
+        }
+        // Rounding to f32 can lose half an ulp; 9 instead of 8 covers it many times over.
+        let delta = (9.0 * f64::from(E) * (reach + reach_of_origin)) as f32;
+        Some(Self {
+            axes,
+            origin: axes.map(|k| origin[k] as f32),
+            slope: [(d[axes[0]] / d[z]) as f32, (d[axes[1]] / d[z]) as f32],
+            delta,
+        })
+    }
+}
 
 impl Blocks {
     pub(crate) fn new(positions: &[[GzCoord; 3]]) -> Self {
@@ -87,29 +117,7 @@ impl Blocks {
 
     /// The ray prepared, or `None` when coordinates are too large for the filter's bound.
     pub(crate) fn prepare(&self, ray: &GzRay) -> Option<FilterRay> {
-        let d = ray.direction.as_dvec3().to_array();
-        let z = if d[0].abs() >= d[1].abs() && d[0].abs() >= d[2].abs() {
-            0
-        } else if d[1].abs() >= d[2].abs() {
-            1
-        } else {
-            2
-        };
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
-        let origin = ray.origin.to_array();
-        let reach_of_origin = origin.iter().fold(0f64, |m, x| m.max(x.abs()));
-        let reach = f64::from(self.bounds.reach()) + reach_of_origin;
-        if reach > f64::from(REACH) {
-            return None;
-        }
-        // Rounding to f32 can lose half an ulp; 9 instead of 8 covers it many times over.
-        let delta = (9.0 * f64::from(E) * (reach + reach_of_origin)) as f32;
-        Some(FilterRay {
-            axes,
-            origin: axes.map(|k| origin[k] as f32),
-            slope: [(d[axes[0]] / d[z]) as f32, (d[axes[1]] / d[z]) as f32],
-            delta,
-        })
+        FilterRay::new(ray, self.bounds.reach())
     }
 
     /// Appends the numbers of all triangles of the blocks `from..to` that `ray` may hit.
@@ -124,7 +132,7 @@ impl Blocks {
 }
 
 /// The longest edge in max norm, rounded up.
-fn longest_edge(corners: &[GzCoord; 3]) -> f32 {
+pub(super) fn longest_edge(corners: &[GzCoord; 3]) -> f32 {
     let [a, b, c] = corners.map(|p| p.as_dvec3());
     let longest = (b - a).abs().max((c - b).abs()).max((a - c).abs()).max_element();
     let rounded = longest as f32;

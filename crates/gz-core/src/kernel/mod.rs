@@ -4,11 +4,14 @@ mod certify;
 mod dyadic;
 mod exact;
 pub(crate) mod filter;
+mod group;
 mod order;
 mod plane;
 
 pub use certify::hit_weights;
 pub(crate) use exact::side_sign;
+pub use filter::FilterRay;
+pub use group::TriGroup;
 pub use order::{Closest, is_hit};
 pub(crate) use plane::plane_then_inside;
 

@@ -2,10 +2,12 @@
 #![allow(unsafe_code)]
 
 mod control;
+mod lanes;
 
 use crate::TriId;
 use crate::kernel::filter::{Block, FilterRay, filter_body};
 pub use control::with_default_float_control;
+pub use lanes::{Lanes, Task, dispatch};
 use std::sync::OnceLock;
 
 /// A set of vector instructions that kernels are compiled for. Answers do not depend on it.
