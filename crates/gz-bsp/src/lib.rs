@@ -16,12 +16,15 @@
 #![forbid(unsafe_code)]
 
 mod check;
+mod cost;
 mod midpoint;
 mod params;
+mod slab;
 mod stats;
 mod visit;
 mod walk;
 
+pub use cost::{BspTree, CostModel, CostStats};
 pub use midpoint::{MidpointTree, Node};
 pub use params::{BuildError, Midpoint};
 pub use stats::TreeStats;

@@ -8,7 +8,9 @@ pub trait Visits {
     fn node(&mut self) {}
     /// A leaf is entered.
     fn leaf(&mut self) {}
-    /// A triangle is tested.
+    /// A group of eight triangles is filtered.
+    fn group(&mut self) {}
+    /// A triangle is tested in f64.
     fn test(&mut self, _tri: TriId) {}
 }
 
@@ -22,7 +24,9 @@ pub struct VisitCount {
     pub nodes: u64,
     /// Leaves entered.
     pub leaves: u64,
-    /// Triangles tested, each time counted.
+    /// Groups of eight triangles filtered.
+    pub groups: u64,
+    /// Triangles tested in f64, each time counted.
     pub tests: u64,
     /// A triangle whose tests are not counted: the one that a ray leaves, where the paper's figures leave it out.
     pub excluded: Option<TriId>,
@@ -35,6 +39,10 @@ impl Visits for VisitCount {
 
     fn leaf(&mut self) {
         self.leaves += 1;
+    }
+
+    fn group(&mut self) {
+        self.groups += 1;
     }
 
     fn test(&mut self, tri: TriId) {

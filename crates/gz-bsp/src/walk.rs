@@ -1,58 +1,9 @@
 //! The paper's walk, plain: recursive, front to back (its section 4.2).
 
+use crate::slab::{Slabs, Span};
 use crate::{MidpointTree, Node, Visits};
-use glam::DVec3;
 use gz_core::kernel::{Closest, is_hit};
-use gz_core::{Bounds, ClassMask, GzRay, Hit, RayBatch, RayQuery, TriBuffer, TriId, with_default_float_control};
-
-/// Distances along the ray between which a node is crossed: the paper's min and max, never too narrow.
-#[derive(Clone, Copy)]
-struct Span {
-    min: f64,
-    max: f64,
-}
-
-/// A ray against planes. A distance (plane - o) * (1 / d) passes three roundings, each at most a factor 1 + 2^-53 off, so it is within
-/// a relative 4 * 2^-53 of the true one; eight times 2^-53 covers it.
-#[derive(Clone, Copy)]
-struct Walker<'r> {
-    ray: &'r GzRay,
-    inverse: DVec3,
-}
-
-const PAD: f64 = 4.0 * f64::EPSILON;
-
-impl<'r> Walker<'r> {
-    fn new(ray: &'r GzRay) -> Self {
-        Self { ray, inverse: ray.direction.as_dvec3().recip() }
-    }
-
-    /// Bounds of the distance at which the ray crosses `axis = plane`; the direction is not 0 along `axis`.
-    fn crossing(&self, axis: usize, plane: f32) -> (f64, f64) {
-        let t = (f64::from(plane) - self.ray.origin[axis]) * self.inverse[axis];
-        let pad = t.abs() * PAD;
-        (t - pad, t + pad)
-    }
-
-    /// Where the ray crosses the box, widened; `None` when it surely does not.
-    fn through(&self, bounds: &Bounds) -> Option<Span> {
-        let mut span = Span { min: f64::from(self.ray.tmin), max: f64::from(self.ray.tmax) };
-        for axis in 0..3 {
-            let (low, high) = (bounds.min[axis], bounds.max[axis]);
-            if self.ray.direction[axis] == 0.0 {
-                let o = self.ray.origin[axis];
-                if !(f64::from(low) <= o && o <= f64::from(high)) {
-                    return None;
-                }
-                continue;
-            }
-            let (enter, leave) = if self.ray.direction[axis] > 0.0 { (low, high) } else { (high, low) };
-            span.min = span.min.max(self.crossing(axis, enter).0);
-            span.max = span.max.min(self.crossing(axis, leave).1);
-        }
-        (span.min <= span.max).then_some(span)
-    }
-}
+use gz_core::{ClassMask, GzRay, Hit, RayBatch, RayQuery, TriBuffer, TriId, with_default_float_control};
 
 /// What is asked of the leaves of a walk.
 trait Quest {
@@ -67,7 +18,7 @@ impl MidpointTree<'_> {
     ///
     /// Near is the half that the ray crosses first. For a ray that starts in the node that is the half of its origin, as the paper
     /// has it; ordered by direction the rule also holds for rays that start elsewhere or lie in the plane.
-    fn walk(&self, id: u32, span: Span, walker: &Walker<'_>, quest: &mut impl Quest, visits: &mut impl Visits) -> bool {
+    fn walk(&self, id: u32, span: Span, walker: &Slabs<'_>, quest: &mut impl Quest, visits: &mut impl Visits) -> bool {
         if quest.is_beyond(span.min) {
             return false;
         }
@@ -119,7 +70,7 @@ impl MidpointTree<'_> {
         if !ray.is_valid() {
             return false;
         }
-        let walker = Walker::new(ray);
+        let walker = Slabs::new(ray);
         let Some(span) = walker.through(self.nodes[0].bounds()) else { return false };
         self.walk(0, span, &walker, quest, visits)
     }

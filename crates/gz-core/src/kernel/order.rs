@@ -23,6 +23,9 @@ struct Candidate {
 impl Closest {
     /// Takes triangle `tri` of `positions` into account for a valid `ray`. Order of calls and repeated calls do not show in the result.
     pub fn consider(&mut self, ray: &GzRay, tri: TriId, positions: &[[GzCoord; 3]]) {
+        if self.best.is_some_and(|best| best.tri == tri) {
+            return;
+        }
         let corners = &positions[tri as usize];
         let (lo, hi) = match certify(ray, corners) {
             Verdict::Miss => return,
@@ -36,7 +39,7 @@ impl Closest {
         let better = self.best.is_none_or(|best| {
             if hi < best.lo {
                 true
-            } else if lo > best.hi || tri == best.tri {
+            } else if lo > best.hi {
                 false
             } else {
                 let order = exact_order(ray, corners, &positions[best.tri as usize]);
@@ -81,6 +84,10 @@ fn exact_interval(ray: &GzRay, corners: &[GzCoord; 3]) -> Option<(f64, f64)> {
 
 /// The exact order of the T-values of two triangles that the ray hits.
 fn exact_order(ray: &GzRay, one: &[GzCoord; 3], other: &[GzCoord; 3]) -> Ordering {
+    // Copies of a triangle are common enough to be told at once.
+    if one == other {
+        return Ordering::Equal;
+    }
     match (ExactHit::of(ray, one), ExactHit::of(ray, other)) {
         (Some(one), Some(other)) => one.order(&other),
         // Candidates are proved hits; a miss here would be a fault of the bound.
