@@ -4,16 +4,36 @@ use crate::{Background, Scene, SceneNeeds};
 use gz_core::{GzColor, RayQuery, Tile, TileGrid, TileScratch, glam::DVec2, trace_tile};
 
 /// What was traced.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
     /// Primary rays.
-    pub primary: u64,
+    pub primary_rays: u64,
     /// Shadow rays.
-    pub shadow: u64,
+    pub shadow_rays: u64,
     /// Mirror rays.
-    pub mirror: u64,
+    pub mirror_rays: u64,
     /// Glass rays.
-    pub glass: u64,
+    pub glass_rays: u64,
+    /// NaN pixels.
+    pub nan_pixels: u64,
+}
+
+impl FrameStats {
+    /// Rays of all kinds.
+    pub fn rays(&self) -> u64 {
+        self.primary_rays + self.shadow_rays + self.mirror_rays + self.glass_rays
+    }
+
+    /// Each count with its name.
+    pub fn rows(&self) -> [(&'static str, u64); 5] {
+        [
+            ("primary_rays", self.primary_rays),
+            ("shadow_rays", self.shadow_rays),
+            ("mirror_rays", self.mirror_rays),
+            ("glass_rays", self.glass_rays),
+            ("nan_pixels", self.nan_pixels),
+        ]
+    }
 }
 
 /// A shaded picture.
@@ -41,7 +61,7 @@ pub fn shade_frame(
     for tile in grid.tiles() {
         trace_tile(&tile, DVec2::ZERO, &scene.camera, query, &mut scratch, &mut pixels);
         for ((i, j), pixel) in tile.pixels().zip(&pixels) {
-            frame.stats.primary += 1;
+            frame.stats.primary_rays += 1;
             frame.colors[((j - area.y0) * area.width() + i - area.x0) as usize] = match (pixel.hit.is_hit(), scene.background) {
                 (true, _) => scene.materials[scene.tris.material(pixel.hit.tri) as usize].kd,
                 (false, Background::Plain(color)) => color,

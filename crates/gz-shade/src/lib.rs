@@ -12,7 +12,7 @@ mod rules;
 mod scene;
 mod texture;
 
-pub use color::encode;
+pub use color::{course12_byte, srgb_byte};
 pub use frame::{Frame, FrameStats, shade_frame};
 pub use light::{Falloff, GzLight, LightKind};
 pub use material::{Interpolate, Material, MaterialKind, Surface};
