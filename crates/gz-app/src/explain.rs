@@ -1,5 +1,6 @@
 //! What a scene needs, and what each need costs.
 
+use crate::stats::rays_by_kind;
 use gz_shade::{FrameStats, Scene, SceneNeeds};
 use std::fmt::Write;
 
@@ -42,18 +43,13 @@ pub fn needs_report(scene: &Scene, needs: &SceneNeeds) -> String {
 
 /// The answer to `--explain`: needs with their bytes, then the rays that a finished render cast for them.
 pub fn explain(scene: &Scene, needs: &SceneNeeds, stats: &FrameStats) -> String {
-    let keep = needs.attributes();
-    let bytes = keep.bytes_per_triangle();
     format!(
         "what the scene needs (positions: 36 bytes a triangle)\n{}  together {} bytes a triangle, {} for {} triangles\n\
-         rays cast\n  primary {}\n  shadow  {}\n  mirror  {}\n  glass   {}\n",
+         rays cast: {}\n",
         needs_report(scene, needs),
-        bytes,
+        needs.attributes().bytes_per_triangle(),
         scene.tris.bytes(),
         scene.tris.len(),
-        stats.primary,
-        stats.shadow,
-        stats.mirror,
-        stats.glass,
+        rays_by_kind(stats),
     )
 }

@@ -52,7 +52,15 @@ pub fn picture(frame: &Frame, format: ImageFormat, code: ColorCode) -> Result<Ve
 
 /// Colours as bytes: red, green, blue of each.
 pub fn rgb8(colors: &[GzColor], code: ColorCode) -> Vec<u8> {
-    colors.iter().flat_map(|c| c.to_array()).map(|channel| gz_shade::encode(code, channel)).collect()
+    colors.iter().flat_map(|c| c.to_array()).map(|channel| byte(channel, code)).collect()
+}
+
+/// The byte of one channel of a linear colour. Below 0 and NaN give 0, above 1 gives 255.
+pub fn byte(channel: f32, code: ColorCode) -> u8 {
+    match code {
+        ColorCode::Srgb => gz_shade::srgb_byte(channel),
+        ColorCode::Course12 => gz_shade::course12_byte(channel),
+    }
 }
 
 /// An 8-bit RGB picture as a PNG file.

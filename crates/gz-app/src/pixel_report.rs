@@ -4,10 +4,10 @@ use crate::args::Accel;
 use crate::cli::PixelArgs;
 use crate::error::AppError;
 use crate::progress::say;
-use crate::{args, job, load, threads};
+use crate::{args, job, load, output, stats, threads};
 use gz_core::glam::DVec2;
 use gz_core::{BruteForce, GzRay, Hit, RayQuery, Tile, TileGrid, TriBuffer};
-use gz_shade::{Scene, SceneNeeds, encode, shade_frame};
+use gz_shade::{Scene, SceneNeeds, shade_frame};
 use std::fmt::Write;
 
 /// Triangles on the ray that are listed at most.
@@ -70,14 +70,9 @@ fn describe(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, args: &Pixel
     }
     let area = Tile { x0: args.x, y0: args.y, x1: args.x + 1, y1: args.y + 1 };
     let frame = shade_frame(scene, needs, query, &TileGrid::of(area, 1), &|_| ());
-    let stats = &frame.stats;
-    let _ = writeln!(
-        text,
-        "rays       primary {}, shadow {}, mirror {}, glass {}",
-        stats.primary, stats.shadow, stats.mirror, stats.glass
-    );
+    let _ = writeln!(text, "rays       {}", stats::rays_by_kind(&frame.stats));
     for color in &frame.colors {
-        let bytes = color.to_array().map(|channel| encode(scene.rules.color_code, channel));
+        let bytes = color.to_array().map(|channel| output::byte(channel, scene.rules.color_code));
         let _ = writeln!(text, "colour     {color} linear, {bytes:?} in a picture");
     }
     text

@@ -57,12 +57,11 @@ fn frame(job: &RenderJob) -> Result<String, AppError> {
     }
     clock.lap("write");
 
-    let nan_pixels = frame.colors.iter().filter(|color| color.is_nan()).count();
-    if nan_pixels > 0 {
-        progress.warn(&format!("{nan_pixels} pixels came out as NaN and are written black"));
+    if frame.stats.nan_pixels > 0 {
+        progress.warn(&format!("{} samples came out as NaN: please report the scene", frame.stats.nan_pixels));
     }
     let threads = rayon::current_num_threads();
-    let stats = RenderStats { job, scene: &scene, needs, area, frame: &frame.stats, nan_pixels, threads, clock: &clock };
+    let stats = RenderStats { job, scene: &scene, needs, area, frame: &frame.stats, threads, clock: &clock };
     if let Some(file) = &job.stats_json {
         file.write(format!("{:#}\n", stats.json()).as_bytes())?;
     }

@@ -1,5 +1,6 @@
 //! The sheet: expected, difference and actual side by side.
 
+use crate::output;
 use crate::picture::{Picture, Unit};
 use crate::view::id_color;
 use gz_core::{GzColor, Hit};
@@ -44,7 +45,7 @@ pub fn of_hits(width: u32, expected: &[Hit], actual: &[Hit]) -> Sheet {
 fn bytes(picture: &Picture) -> Vec<[u8; 3]> {
     let byte = |c: f32| match picture.unit {
         Unit::Byte => c.round() as u8,
-        Unit::Linear => gz_shade::encode(ColorCode::Srgb, c),
+        Unit::Linear => output::byte(c, ColorCode::Srgb),
     };
     picture.rgb.iter().map(|pixel| pixel.map(byte)).collect()
 }

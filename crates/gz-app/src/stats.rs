@@ -39,6 +39,12 @@ impl Clock {
     }
 }
 
+/// `primary 4, shadow 3, mirror 2, glass 1`.
+pub fn rays_by_kind(frame: &FrameStats) -> String {
+    let FrameStats { primary_rays, shadow_rays, mirror_rays, glass_rays, .. } = frame;
+    format!("primary {primary_rays}, shadow {shadow_rays}, mirror {mirror_rays}, glass {glass_rays}")
+}
+
 /// What a render did, to be told to people and programs.
 #[derive(Debug)]
 pub struct RenderStats<'a> {
@@ -52,8 +58,6 @@ pub struct RenderStats<'a> {
     pub area: Tile,
     /// Rays and other counts.
     pub frame: &'a FrameStats,
-    /// Pixels with a channel that is not a number.
-    pub nan_pixels: usize,
     /// Threads used.
     pub threads: usize,
     /// Seconds by phase.
@@ -61,26 +65,16 @@ pub struct RenderStats<'a> {
 }
 
 impl RenderStats<'_> {
-    /// All rays cast.
-    pub fn rays(&self) -> u64 {
-        let frame = self.frame;
-        frame.primary + frame.shadow + frame.mirror + frame.glass
-    }
-
     /// One line for people: `out/teapot.png: 800x600, 1408 triangles, 2000000 rays (primary 480000, ...) in 3.21 s`.
     pub fn summary(&self) -> String {
-        let frame = self.frame;
         format!(
-            "{}: {}x{}, {} triangles, {} rays (primary {}, shadow {}, mirror {}, glass {}) in {:.2} s",
+            "{}: {}x{}, {} triangles, {} rays ({}) in {:.2} s",
             self.job.output.path().display(),
             self.area.width(),
             self.area.height(),
             self.scene.tris.len(),
-            self.rays(),
-            frame.primary,
-            frame.shadow,
-            frame.mirror,
-            frame.glass,
+            self.frame.rays(),
+            rays_by_kind(self.frame),
             self.clock.total(),
         )
     }
@@ -88,6 +82,8 @@ impl RenderStats<'_> {
     /// All of it for programs. Times are in seconds, sizes in bytes; counts are exact.
     pub fn json(&self) -> Value {
         let (scene, frame, job) = (self.scene, self.frame, self.job);
+        let counters: serde_json::Map<_, _> =
+            frame.rows().map(|(name, count)| (name.to_owned(), json!(count))).into_iter().collect();
         json!({
             "scene": job.scene.display().to_string(),
             "picture": job.output.path().display().to_string(),
@@ -101,13 +97,13 @@ impl RenderStats<'_> {
             },
             "needs": crate::explain::needs_in_use(&self.needs),
             "rays": {
-                "primary": frame.primary,
-                "shadow": frame.shadow,
-                "mirror": frame.mirror,
-                "glass": frame.glass,
-                "total": self.rays(),
+                "primary": frame.primary_rays,
+                "shadow": frame.shadow_rays,
+                "mirror": frame.mirror_rays,
+                "glass": frame.glass_rays,
+                "total": frame.rays(),
             },
-            "counters": { "nan_pixels": self.nan_pixels },
+            "counters": counters,
             "seconds": self.clock.json(),
             "settings": {
                 "camera": args::camera_name(scene.camera.model()),

@@ -58,7 +58,7 @@ impl View {
 
     /// The same as a frame: see [`Frame`] for its parts; only primary rays are counted.
     pub fn frame(self, scene: &Scene, hits: &[Hit], grid: &TileGrid) -> Frame {
-        let stats = gz_shade::FrameStats { primary: hits.len() as u64, ..Default::default() };
+        let stats = gz_shade::FrameStats { primary_rays: hits.len() as u64, ..Default::default() };
         Frame { area: grid.area(), colors: self.colors(scene, hits, grid), stats }
     }
 }
