@@ -27,6 +27,8 @@ pub struct Draft {
     pub scene: Scene,
     /// What was odd.
     pub warnings: Vec<String>,
+    /// Triangles that the camera drops.
+    pub dropped: u64,
 }
 
 /// Reads a scene.
@@ -57,7 +59,7 @@ pub fn scene(path: &Path, overrides: &Overrides) -> Result<Draft, LoadError> {
         textures: vec![],
         rules,
     };
-    Ok(Draft { scene, warnings: vec![] })
+    Ok(Draft { scene, warnings: vec![], dropped: 0 })
 }
 
 impl Draft {
