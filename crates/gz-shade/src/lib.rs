@@ -3,8 +3,6 @@
 //! Nothing here names a tree or reads a file; visibility is asked through [`gz_core::RayQuery`].
 #![forbid(unsafe_code)]
 
-mod color;
-mod frame;
 mod light;
 mod material;
 mod needs;
@@ -12,8 +10,6 @@ mod rules;
 mod scene;
 mod texture;
 
-pub use color::{course12_byte, srgb_byte};
-pub use frame::{Frame, FrameStats, shade_frame};
 pub use light::{Falloff, GzLight, LightKind};
 pub use material::{Interpolate, Material, MaterialKind, Surface};
 pub use needs::SceneNeeds;
