@@ -1,1 +1,32 @@
 //! Files in.
+//!
+//! [`scene`] reads a scene file, or a bare mesh, to a [`Draft`]; [`Draft::place`] gives the scene to render. In between,
+//! [`gz_shade::SceneNeeds::of`] looks at the draft and decides what placing has to store.
+
+pub mod asc;
+pub mod normals;
+pub mod obj;
+pub mod picture;
+
+mod bare;
+mod draft;
+mod entries;
+mod inline;
+mod keys;
+mod lights;
+mod own_material;
+mod part;
+mod place;
+mod scene_file;
+#[cfg(test)]
+mod scratch;
+mod settings;
+mod source;
+mod spot;
+mod surfaces;
+mod values;
+mod words;
+
+pub use draft::Draft;
+pub use scene_file::scene;
+pub use settings::Overrides;

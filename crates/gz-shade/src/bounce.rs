@@ -1,0 +1,197 @@
+//! Where a ray goes on at a mirror or at glass, and how much each branch counts.
+
+use crate::interpolate::{HitPoint, normal, outside};
+use crate::media::{Media, MediaStacks};
+use crate::optics::reflectance;
+use crate::reflection::reflect;
+use crate::refraction::refract;
+use crate::tree::{Node, RayKind};
+use crate::{FrameStats, GlassBlend, MaterialKind, MirrorBlend, Scene, SceneNeeds};
+use glam::DVec3;
+use gz_core::{GzColor, GzCoord, GzRay, leave_surface, side_of};
+
+/// Branches that weigh less than this of their pixel (in their strongest channel) end: 2^-16 is an eighth of the smallest step of a
+/// 12-bit picture, 2^-12, even if sixteen of them meet in a pixel it is not half a step of an 8-bit one.
+const LEAST_WEIGHT: f32 = 1.0 / 65536.0;
+
+/// A ray that goes on from a hit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Branch {
+    pub(crate) parent: u32,
+    pub(crate) kind: RayKind,
+    pub(crate) ray: GzRay,
+    /// What the parent multiplies the branch's colour by.
+    pub(crate) factor: GzColor,
+    pub(crate) media: Media,
+}
+
+/// What happens at the hits of a level.
+pub(crate) struct Bouncer<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) needs: SceneNeeds,
+    pub(crate) media: &'a mut MediaStacks,
+    pub(crate) branches: &'a mut Vec<Branch>,
+    pub(crate) stats: &'a mut FrameStats,
+}
+
+/// How a ray meets a surface.
+struct Meeting {
+    at: HitPoint,
+    /// Direction of the ray, at length 1.
+    d: DVec3,
+    /// Shading normal at length 1, turned against the ray: d.n <= 0.
+    n: DVec3,
+    /// The side of the triangle that the ray goes to, as [`side_of`] has it.
+    to_side: i8,
+    /// The ray comes from outside.
+    entering: bool,
+}
+
+impl Meeting {
+    /// Cosine between the normal and the incoming ray, in [0, 1].
+    fn cos(&self) -> f64 {
+        (-self.d.dot(self.n)).clamp(0.0, 1.0)
+    }
+}
+
+impl Bouncer<'_> {
+    /// Adds the branches that go on from node `id`, a hit, and returns what its local colour is multiplied by.
+    ///
+    /// At the depth limit a hit has no branches and keeps its local colour whole.
+    pub(crate) fn bounce(&mut self, id: u32, node: &Node) -> f32 {
+        match self.scene.material(node.hit.tri).kind {
+            MaterialKind::Mirror { ior } if self.needs.mirrors => self.mirror(id, node, ior),
+            MaterialKind::Glass { ior } if self.needs.glass => self.glass(id, node, ior),
+            _ => 1.0,
+        }
+    }
+
+    fn mirror(&mut self, id: u32, node: &Node, ior: Option<f32>) -> f32 {
+        let rules = &self.scene.rules;
+        let meeting = self.meet(node);
+        // 1. The reflected share: all of it at an ideal mirror and where the paper's program does not ask.
+        let share = match (rules.mirror_blend, ior) {
+            (MirrorBlend::Physical | MirrorBlend::Add, Some(ior)) => {
+                reflectance(rules.fresnel, meeting.cos(), self.media.ior(node.media) / f64::from(ior))
+            }
+            _ => 1.0,
+        };
+        let factor = self.scene.material(node.hit.tri).tint * share as f32;
+        if self.is_cut(node, factor) {
+            return 1.0;
+        }
+        // 2. The direction.
+        let direction = match self.last_light(&meeting) {
+            Some(wrong) if rules.reflect_last_light => Some(wrong),
+            _ => self.on_side(&meeting, reflect(meeting.d, meeting.n), -meeting.to_side),
+        };
+        let branch = Branch { parent: id, kind: RayKind::Mirror, ray: node.ray, factor, media: node.media };
+        let goes_on = self.emit(node, &meeting, direction, branch);
+        // 3. What is left of the local colour. Under Replace a miss will bring it back.
+        match rules.mirror_blend {
+            MirrorBlend::Physical => (1.0 - share) as f32,
+            MirrorBlend::Replace => f32::from(u8::from(!goes_on)),
+            MirrorBlend::Add => 1.0,
+        }
+    }
+
+    fn glass(&mut self, id: u32, node: &Node, ior: f32) -> f32 {
+        let rules = &self.scene.rules;
+        let meeting = self.meet(node);
+        // 1. From which medium to which, and how much is reflected.
+        let medium = self.scene.tris.material(node.hit.tri);
+        let crossing = self.media.cross(node.media, medium, f64::from(ior), meeting.entering);
+        let eta = crossing.n1 / crossing.n2;
+        let refracted = refract(meeting.d, meeting.n, eta);
+        let physical = rules.glass_blend == GlassBlend::Physical;
+        let share = if physical { reflectance(rules.fresnel, meeting.cos(), eta) as f32 } else { 0.0 };
+        let through = if refracted.is_some() { self.scene.material(node.hit.tri).tint * (1.0 - share) } else { GzColor::ZERO };
+        if self.is_cut(node, through + share) {
+            return 1.0;
+        }
+        self.stats.unmatched_exits += u64::from(crossing.unmatched);
+        self.stats.total_reflections += u64::from(refracted.is_none());
+        // 2. The reflected branch stays in its medium, the refracted one changes it.
+        let branch = Branch { parent: id, kind: RayKind::Glass, ray: node.ray, factor: GzColor::splat(share), media: node.media };
+        if share > 0.0 {
+            let direction = self.on_side(&meeting, reflect(meeting.d, meeting.n), -meeting.to_side);
+            self.emit(node, &meeting, direction, branch);
+        }
+        if let Some(refracted) = refracted {
+            let direction = self.on_side(&meeting, refracted, meeting.to_side);
+            self.emit(node, &meeting, direction, Branch { factor: through, media: crossing.after, ..branch });
+        }
+        1.0
+    }
+
+    /// The geometry of a hit as mirrors and glass see it.
+    ///
+    /// With geometric sides the triangle itself says where the ray comes from and whether that is outside; the shading normal, taken
+    /// on that side, only bends directions. Where it leans away from the ray all the same (at the silhouette of a coarse mesh) it is
+    /// brought back to where the ray grazes it: there all is reflected, as it is in the limit.
+    fn meet(&self, node: &Node) -> Meeting {
+        let tris = &self.scene.tris;
+        let tri = node.hit.tri;
+        let at = HitPoint::of(tris, tri, &node.ray);
+        let d = node.ray.direction.as_dvec3().normalize_or_zero();
+        let n = normal(tris, self.needs, tri, self.scene.material(tri).interpolate, at.weights);
+        let to_side = side_of(&at.corners, node.ray.direction);
+        if !self.scene.rules.geometric_sides {
+            let entering = d.dot(n) < 0.0;
+            return Meeting { at, d, n: if entering { n } else { -n }, to_side, entering };
+        }
+        let entering = outside(tris, self.needs, tri) != to_side;
+        let n = if entering { n } else { -n };
+        let slope = d.dot(n);
+        let n = if slope <= 0.0 {
+            n
+        } else {
+            (n - d * slope).try_normalize().unwrap_or_else(|| tris.face_normal(tri) * -f64::from(to_side))
+        };
+        Meeting { at, d, n, to_side, entering }
+    }
+
+    /// `direction` in f32 if it leads to `side` of the triangle; else mirrored at the triangle's plane and counted, which is the
+    /// same direction in the limit. `None` if that lies in the plane. Without geometric sides any direction will do.
+    fn on_side(&mut self, meeting: &Meeting, direction: DVec3, side: i8) -> Option<GzCoord> {
+        let rounded = direction.as_vec3();
+        if !self.scene.rules.geometric_sides || side_of(&meeting.at.corners, rounded) == side {
+            return Some(rounded);
+        }
+        self.stats.below_surface += 1;
+        let mirrored = reflect(direction, self.scene.tris.face_normal(meeting.at.tri)).as_vec3();
+        (side_of(&meeting.at.corners, mirrored) == side).then_some(mirrored)
+    }
+
+    /// The direction that the mistake behind the paper's refraction figure gives every mirror ray.
+    fn last_light(&self, meeting: &Meeting) -> Option<GzCoord> {
+        self.scene.lights.last().map(|light| light.arrive(meeting.at.point).direction)
+    }
+
+    /// Adds `branch` along `direction` unless it weighs too little or has no way to go; returns whether it was added.
+    fn emit(&mut self, node: &Node, meeting: &Meeting, direction: Option<GzCoord>, branch: Branch) -> bool {
+        let weight = (node.weight * branch.factor).max_element();
+        if weight < LEAST_WEIGHT {
+            self.stats.weak_branches += u64::from(weight > 0.0);
+            self.stats.weak_weight += FrameStats::units(weight);
+            return false;
+        }
+        let start = direction.and_then(|d| Some((leave_surface(&meeting.at.corners, meeting.at.weights, d)?, d)));
+        let Some((origin, direction)) = start else {
+            self.stats.absorbed += 1;
+            return false;
+        };
+        self.branches.push(Branch { ray: GzRay::from_f64(origin, direction), ..branch });
+        true
+    }
+
+    /// Whether the depth limit forbids branches here; counted, with the weight that they would have had.
+    fn is_cut(&mut self, node: &Node, factor: GzColor) -> bool {
+        let cut = node.depth >= self.scene.rules.depth;
+        if cut {
+            self.stats.depth_cuts += 1;
+            self.stats.depth_cut_weight += FrameStats::units((node.weight * factor).max_element());
+        }
+        cut
+    }
+}

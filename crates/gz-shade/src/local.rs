@@ -1,0 +1,174 @@
+//! Local colours: the shading equation at every hit of a tile that counts, light by light.
+
+use crate::interpolate::{self, HitPoint};
+use crate::phong::{Coefficients, light_share};
+use crate::shadow::{ShadowRays, Shadows};
+use crate::tree::Node;
+use crate::{Eye, FrameStats, GzLight, Interpolate, LightKind, Material, Scene, SceneNeeds, ShadowRule, Surface, Texture};
+use glam::DVec3;
+use gz_core::{GzColor, RayQuery, leave_surface, side_of};
+
+/// A hit that is shaded.
+#[derive(Debug)]
+struct Item {
+    node: u32,
+    at: HitPoint,
+    /// Weights for colours and normals: linear in screen space where the rules say so.
+    weights: [f64; 3],
+    /// Shaded at the corners instead of at the hit.
+    corners: bool,
+    /// Unit normal at the hit; unused when shaded at the corners.
+    n: DVec3,
+    /// To the viewer.
+    e: DVec3,
+    /// The side of the triangle that the viewer is on; 0 when normals alone decide which lights count.
+    viewer: i8,
+    k: Coefficients,
+    /// Multiplies the interpolated corner colours.
+    texture: GzColor,
+    /// The equation so far, at the hit or at each corner.
+    sum: [GzColor; 3],
+}
+
+/// What one light would add to an item if nothing were in the way.
+#[derive(Debug)]
+struct Addend {
+    item: u32,
+    color: [GzColor; 3],
+}
+
+/// Room for the shading of a tile, kept from tile to tile.
+#[derive(Debug, Default)]
+pub(crate) struct Lighting {
+    items: Vec<Item>,
+    addends: Vec<Addend>,
+    rays: ShadowRays,
+    shadows: Shadows,
+}
+
+impl Lighting {
+    /// Gives every hit among `nodes` whose local colour counts that colour. The shadow rays of one light are one batch.
+    pub(crate) fn shade(
+        &mut self,
+        scene: &Scene,
+        needs: SceneNeeds,
+        query: &dyn RayQuery,
+        nodes: &mut [Node],
+        stats: &mut FrameStats,
+    ) {
+        // 1. Ambient light, and what the lights will need.
+        self.items.clear();
+        for (id, node) in nodes.iter_mut().enumerate().filter(|(_, node)| node.hit.is_hit() && node.keep != 0.0) {
+            match scene.material(node.hit.tri).surface {
+                Surface::AppColor => node.local = scene.tris.color(node.hit.tri).unwrap_or(GzColor::ONE),
+                Surface::Shaded => self.items.push(Item::of(scene, needs, id as u32, node)),
+            }
+        }
+        // 2. Light by light.
+        let casting = needs.shadows && scene.rules.shadow != ShadowRule::Off && scene.has_secondary_rays();
+        for light in &scene.lights {
+            self.gather(scene, needs, light, casting, stats);
+            if casting && !self.addends.is_empty() {
+                stats.shadow_rays += self.addends.len() as u64;
+                let common_direction = matches!(light.kind, LightKind::Directional(_));
+                stats.tint_queries += self.shadows.trace(scene, query, &self.rays, common_direction);
+            }
+            for (ray, addend) in self.addends.iter().enumerate() {
+                let share = if casting { self.shadows.shares[ray] } else { GzColor::ONE };
+                let sum = &mut self.items[addend.item as usize].sum;
+                (0..3).for_each(|corner| sum[corner] += addend.color[corner] * share);
+            }
+        }
+        // 3. The sums are the colours.
+        for item in &self.items {
+            nodes[item.node as usize].local = item.color(scene.rules.clamp_levels);
+        }
+    }
+
+    /// What `light` would add to each item; its shadow rays when they are `casting`. An item that it adds nothing to has no ray.
+    fn gather(&mut self, scene: &Scene, needs: SceneNeeds, light: &GzLight, casting: bool, stats: &mut FrameStats) {
+        self.addends.clear();
+        self.rays.clear();
+        for (id, item) in self.items.iter().enumerate() {
+            let arrival = light.arrive(item.at.point);
+            if item.viewer != 0 && side_of(&item.at.corners, arrival.direction) != item.viewer {
+                continue; // the light is behind the triangle
+            }
+            let color = if item.corners {
+                let normals = interpolate::normals_at_corners(&scene.tris, needs, item.at.tri);
+                std::array::from_fn(|corner| {
+                    let arrival = light.arrive(item.at.corners[corner].as_dvec3());
+                    light_share(&item.k, normals[corner], arrival.to_light, item.e) * arrival.color
+                })
+            } else {
+                [light_share(&item.k, item.n, arrival.to_light, item.e) * arrival.color, GzColor::ZERO, GzColor::ZERO]
+            };
+            if color == [GzColor::ZERO; 3] {
+                continue;
+            }
+            if casting {
+                let Some(origin) = leave_surface(&item.at.corners, item.at.weights, arrival.direction) else {
+                    stats.absorbed += 1;
+                    continue;
+                };
+                self.rays.push(origin, arrival.direction, arrival.tmax);
+            }
+            self.addends.push(Addend { item: id as u32, color });
+        }
+    }
+}
+
+impl Item {
+    /// The hit of `node` before any light.
+    fn of(scene: &Scene, needs: SceneNeeds, id: u32, node: &Node) -> Self {
+        let (tris, rules, tri) = (&scene.tris, &scene.rules, node.hit.tri);
+        let material = scene.material(tri);
+        let at = HitPoint::of(tris, tri, &node.ray);
+        let weights = if rules.screen_interpolation && node.depth == 0 {
+            scene.camera.screen_weights(&at.corners, at.weights)
+        } else {
+            at.weights
+        };
+        let corners = needs.gouraud && material.interpolate == Interpolate::Gouraud;
+        let n = if corners { DVec3::ZERO } else { interpolate::normal(tris, needs, tri, material.interpolate, weights) };
+        let e = match rules.eye {
+            Eye::Ray => -node.ray.direction.as_dvec3(),
+            Eye::Fixed => DVec3::NEG_Z,
+        };
+        let geometric = rules.geometric_sides && scene.has_secondary_rays();
+        let viewer = if geometric { -side_of(&at.corners, node.ray.direction) } else { 0 };
+
+        let mut k = Coefficients { ka: material.ka, kd: material.kd, ks: material.ks, power: material.power };
+        let mut texture = GzColor::ONE;
+        if let Some(color) = texture_of(scene, needs, material).map(|it| it.color(interpolate::uv(tris, tri, at.weights))) {
+            if corners {
+                // Corners are shaded white; the texture multiplies highlights too.
+                k = Coefficients { ka: GzColor::ONE, kd: GzColor::ONE, ks: GzColor::ONE, ..k };
+                texture = color;
+            } else {
+                // The texture is what the surface scatters.
+                k = Coefficients { ka: color, kd: color, ..k };
+            }
+        }
+        Self { node: id, at, weights, corners, n, e, viewer, k, texture, sum: [k.ka * scene.ambient; 3] }
+    }
+
+    /// The colour, once every light has been added.
+    fn color(&self, clamp: bool) -> GzColor {
+        let limit = |color: GzColor| if clamp { color.clamp(GzColor::ZERO, GzColor::ONE) } else { color };
+        if self.corners { interpolate::color(self.sum.map(limit), self.weights) * self.texture } else { limit(self.sum[0]) }
+    }
+}
+
+/// The texture that colours a material, if any.
+fn texture_of<'a>(scene: &'a Scene, needs: SceneNeeds, material: &Material) -> Option<&'a Texture> {
+    if material.interpolate == Interpolate::Flat && !scene.rules.flat_textures {
+        return None;
+    }
+    let texture = scene.textures.get(material.texture?)?;
+    let needed = match texture {
+        Texture::Image(_) => needs.image_textures,
+        Texture::Procedural(_) => needs.procedural_textures,
+    };
+    needed.then_some(texture)
+}

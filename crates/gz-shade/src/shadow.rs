@@ -1,0 +1,117 @@
+//! Shadows, the plain version: the paper's section 2.3.4.
+//!
+//! From a point P of a surface the shadow ray is P + t L with L the direction to the light; whatever it hits drops that light, while
+//! ambient light stays. We differ from the paper in that glass may tint instead of block, rays to a point light end before it, and P
+//! lies provably on the side that L points to instead of the triangle being skipped by its number.
+
+use crate::{Scene, ShadowRule};
+use glam::DVec3;
+use gz_core::{ClassMask, GzColor, GzCoord, Hit, PerRay, RayBatch, RayQuery, TriClass};
+
+/// The shadow rays of one light: one direction and no end for a directional light, one of each per ray for a point light.
+#[derive(Debug, Default)]
+pub(crate) struct ShadowRays {
+    pub(crate) origins: Vec<DVec3>,
+    pub(crate) directions: Vec<GzCoord>,
+    pub(crate) tmax: Vec<f32>,
+}
+
+impl ShadowRays {
+    /// Forgets all rays.
+    pub(crate) fn clear(&mut self) {
+        self.origins.clear();
+        self.directions.clear();
+        self.tmax.clear();
+    }
+
+    /// Adds a ray.
+    pub(crate) fn push(&mut self, origin: DVec3, direction: GzCoord, tmax: f32) {
+        self.origins.push(origin);
+        self.directions.push(direction);
+        self.tmax.push(tmax);
+    }
+
+    /// The rays as a batch. `common_direction`: all directions are equal, and without end.
+    fn batch(&self, common_direction: bool) -> RayBatch<'_> {
+        let (len, origins) = (self.origins.len(), PerRay::Each(&self.origins[..]));
+        match self.directions.first() {
+            Some(&direction) if common_direction => RayBatch::unbounded(len, origins, PerRay::One(direction)),
+            _ => RayBatch::new(len, origins, PerRay::Each(&self.directions), PerRay::One(0.0), PerRay::Each(&self.tmax)),
+        }
+    }
+}
+
+/// What share of one light reaches the start of each of its shadow rays, and the room that finding it takes.
+#[derive(Debug, Default)]
+pub(crate) struct Shadows {
+    /// The answer: 0 where something opaque is in the way, 1 where nothing is, else the product of tints.
+    pub(crate) shares: Vec<GzColor>,
+    blocked: Vec<bool>,
+    /// Rays still on their way through glass: their number in the light's rays, and the rays themselves.
+    on_way: Vec<u32>,
+    rest: ShadowRays,
+    tmin: Vec<f32>,
+    hits: Vec<Hit>,
+}
+
+impl Shadows {
+    /// Traces `rays`; returns how many further questions were asked about glass in the way.
+    pub(crate) fn trace(&mut self, scene: &Scene, query: &dyn RayQuery, rays: &ShadowRays, common_direction: bool) -> u64 {
+        let tinted = scene.rules.shadow == ShadowRule::Tinted;
+        let blockers = if tinted { ClassMask::only(TriClass::Opaque) } else { ClassMask::ALL };
+        self.blocked.clear();
+        self.blocked.resize(rays.origins.len(), false);
+        query.any_hits(&rays.batch(common_direction), blockers, &mut self.blocked);
+        self.shares.clear();
+        self.shares.extend(self.blocked.iter().map(|&blocked| if blocked { GzColor::ZERO } else { GzColor::ONE }));
+        if tinted { self.tint(scene, query, rays) } else { 0 }
+    }
+
+    /// Multiplies the shares of rays that nothing opaque blocks by the tint of each glass triangle in the way, nearest first. Light
+    /// goes straight through: no refraction, hence no caustics.
+    fn tint(&mut self, scene: &Scene, query: &dyn RayQuery, rays: &ShadowRays) -> u64 {
+        let mut questions = 0;
+        self.on_way.clear();
+        self.on_way.extend((0..rays.origins.len() as u32).filter(|&k| !self.blocked[k as usize]));
+        self.tmin.clear();
+        self.tmin.resize(self.on_way.len(), 0.0);
+        while !self.on_way.is_empty() {
+            self.rest.clear();
+            for &k in &self.on_way {
+                let k = k as usize;
+                self.rest.push(rays.origins[k], rays.directions[k], rays.tmax[k]);
+            }
+            let batch = RayBatch::new(
+                self.on_way.len(),
+                PerRay::Each(&self.rest.origins),
+                PerRay::Each(&self.rest.directions),
+                PerRay::Each(&self.tmin),
+                PerRay::Each(&self.rest.tmax),
+            );
+            self.hits.clear();
+            self.hits.resize(self.on_way.len(), Hit::MISS);
+            query.closest_hits(&batch, ClassMask::only(TriClass::Glass), &mut self.hits);
+            questions += self.on_way.len() as u64;
+            // Keep the rays that met glass, to ask again behind it.
+            let mut kept = 0;
+            for i in 0..self.hits.len() {
+                let hit = self.hits[i];
+                if !hit.is_hit() {
+                    continue;
+                }
+                let share = &mut self.shares[self.on_way[i] as usize];
+                *share *= scene.material(hit.tri).tint;
+                // The exact t rounds to hit.t, so it lies below the next f32: the triangle is not met twice. Of several within
+                // one step, such as two coinciding walls, the first counts for all.
+                if *share != GzColor::ZERO && hit.t.is_finite() {
+                    self.on_way[kept] = self.on_way[i];
+                    self.tmin[kept] = hit.t.next_up();
+                    kept += 1;
+                }
+            }
+            self.on_way.truncate(kept);
+            self.tmin.truncate(kept);
+        }
+        questions
+    }
+}

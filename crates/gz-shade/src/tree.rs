@@ -1,0 +1,184 @@
+//! The rays of a tile's pixels as trees: camera rays are the roots, mirror and glass rays their descendants.
+
+use crate::bounce::{Bouncer, Branch};
+use crate::media::{Media, MediaStacks};
+use crate::{FrameStats, GlassBlend, MirrorBlend, Scene, SceneNeeds};
+use glam::DVec3;
+use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery};
+
+/// What kind of ray it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayKind {
+    /// From the camera.
+    Primary,
+    /// Reflected by a mirror.
+    Mirror,
+    /// Reflected or refracted by glass.
+    Glass,
+}
+
+/// The parent of a node that has none.
+pub(crate) const NO_PARENT: u32 = u32::MAX;
+
+/// One ray, what it hit, and its part in the pixel's colour.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node {
+    pub(crate) parent: u32,
+    pub(crate) kind: RayKind,
+    /// 0 for a camera ray.
+    pub(crate) depth: u32,
+    pub(crate) ray: GzRay,
+    pub(crate) hit: Hit,
+    /// What the ray runs through.
+    pub(crate) media: Media,
+    /// What the parent multiplies this node's colour by.
+    pub(crate) factor: GzColor,
+    /// The product of the factors from here to the root.
+    pub(crate) weight: GzColor,
+    /// What the local colour is multiplied by: less than 1 where a mirror takes its place.
+    pub(crate) keep: f32,
+    /// Local colour of a hit; what a miss shows.
+    pub(crate) local: GzColor,
+    /// local * keep + sum over children of factor * color.
+    pub(crate) color: GzColor,
+}
+
+impl Node {
+    /// A camera ray.
+    pub(crate) fn root(ray: GzRay, hit: Hit) -> Self {
+        Self {
+            parent: NO_PARENT,
+            kind: RayKind::Primary,
+            depth: 0,
+            ray,
+            hit,
+            media: Media::AIR,
+            factor: GzColor::ONE,
+            weight: GzColor::ONE,
+            keep: 1.0,
+            local: GzColor::ZERO,
+            color: GzColor::ZERO,
+        }
+    }
+}
+
+/// All nodes of a tile, children after their parents, and the room that growing them takes.
+#[derive(Debug, Default)]
+pub(crate) struct Tree {
+    pub(crate) nodes: Vec<Node>,
+    media: MediaStacks,
+    branches: Vec<Branch>,
+    origins: Vec<DVec3>,
+    directions: Vec<GzCoord>,
+    hits: Vec<Hit>,
+}
+
+impl Tree {
+    /// Forgets all nodes.
+    pub(crate) fn clear(&mut self) {
+        self.nodes.clear();
+        self.media.clear();
+    }
+
+    /// Follows mirror and glass rays, level by level, from the roots; each kind of a level is one batch.
+    pub(crate) fn grow(&mut self, scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, stats: &mut FrameStats) {
+        if !(needs.mirrors || needs.glass) || !scene.has_secondary_rays() {
+            return;
+        }
+        let mut level = 0..self.nodes.len();
+        while !level.is_empty() {
+            // 1. Where do the hits of this level go on?
+            self.branches.clear();
+            let (media, branches) = (&mut self.media, &mut self.branches);
+            let mut bouncer = Bouncer { scene, needs, media, branches, stats };
+            for id in level.clone() {
+                let node = self.nodes[id];
+                if node.hit.is_hit() {
+                    self.nodes[id].keep = bouncer.bounce(id as u32, &node);
+                }
+            }
+            // 2. Those rays are the next level.
+            level = self.nodes.len()..self.nodes.len();
+            for kind in [RayKind::Mirror, RayKind::Glass] {
+                level.end += self.trace(kind, scene, query, stats);
+            }
+        }
+    }
+
+    /// Traces the branches of one kind as a batch and adds them as nodes; returns how many there are.
+    fn trace(&mut self, kind: RayKind, scene: &Scene, query: &dyn RayQuery, stats: &mut FrameStats) -> usize {
+        let first = self.nodes.len();
+        self.origins.clear();
+        self.directions.clear();
+        for branch in self.branches.iter().filter(|branch| branch.kind == kind) {
+            let parent = &self.nodes[branch.parent as usize];
+            self.origins.push(branch.ray.origin);
+            self.directions.push(branch.ray.direction);
+            self.nodes.push(Node {
+                parent: branch.parent,
+                kind,
+                depth: parent.depth + 1,
+                media: branch.media,
+                factor: branch.factor,
+                weight: parent.weight * branch.factor,
+                ..Node::root(branch.ray, Hit::MISS)
+            });
+        }
+        let count = self.nodes.len() - first;
+        if count == 0 {
+            return 0;
+        }
+        let rays = RayBatch::unbounded(count, PerRay::Each(&self.origins), PerRay::Each(&self.directions));
+        self.hits.clear();
+        self.hits.resize(count, Hit::MISS);
+        query.closest_hits(&rays, ClassMask::ALL, &mut self.hits);
+
+        for (id, &hit) in (first..).zip(&self.hits) {
+            self.nodes[id].hit = hit;
+            stats.secondary_hits += u64::from(hit.is_hit());
+            if !hit.is_hit() && kind == RayKind::Mirror && scene.rules.mirror_blend == MirrorBlend::Replace {
+                // Nothing to replace the mirror's own colour with.
+                let parent = self.nodes[id].parent as usize;
+                self.nodes[parent].keep = 1.0;
+            }
+        }
+        match kind {
+            RayKind::Mirror => stats.mirror_rays += count as u64,
+            _ => stats.glass_rays += count as u64,
+        }
+        count
+    }
+
+    /// What rays that hit nothing show: the background where colours blend as in physics, else a secondary ray adds nothing.
+    pub(crate) fn show_background(&mut self, scene: &Scene, up: DVec3) {
+        for node in self.nodes.iter_mut().filter(|node| !node.hit.is_hit()) {
+            let shows = match node.kind {
+                RayKind::Primary => true,
+                RayKind::Mirror => scene.rules.mirror_blend == MirrorBlend::Physical,
+                RayKind::Glass => scene.rules.glass_blend == GlassBlend::Physical,
+            };
+            if shows {
+                node.local = scene.background.color(node.ray.direction.as_dvec3(), up);
+            }
+        }
+    }
+
+    /// Combines colours from the leaves to the roots.
+    ///
+    /// The backward sweep meets children before their parents, and always in the same order.
+    pub(crate) fn combine(&mut self, clamp_levels: bool) {
+        for node in &mut self.nodes {
+            node.color = if node.keep == 0.0 { GzColor::ZERO } else { node.local * node.keep };
+        }
+        for id in (0..self.nodes.len()).rev() {
+            let node = &mut self.nodes[id];
+            if clamp_levels {
+                node.color = node.color.clamp(GzColor::ZERO, GzColor::ONE);
+            }
+            let (parent, share) = (node.parent, node.factor * node.color);
+            if parent != NO_PARENT {
+                self.nodes[parent as usize].color += share;
+            }
+        }
+    }
+}
