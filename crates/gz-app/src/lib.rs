@@ -4,6 +4,7 @@
 pub mod args;
 pub mod cli;
 pub mod compare;
+pub mod display;
 pub mod error;
 pub mod explain;
 pub mod hits_file;

@@ -10,13 +10,13 @@ const U: f64 = f64::EPSILON / 2.0;
 /// The side of a triangle's plane that `direction` points to: the sign of `direction . N` with N = (b - a) x (c - a), decided exactly.
 ///
 /// 1 along the normal of the winding, -1 against it, 0 for a direction in the plane or a triangle without area. `direction` is finite.
-pub fn side_of(corners: &[GzCoord; 3], direction: GzCoord) -> i32 {
+pub fn side_of(corners: &[GzCoord; 3], direction: GzCoord) -> i8 {
     // Edges of f32 corners round once in f64: 7 roundings as in the certified test, so 8u of the permanent is a proof.
     let [a, b, c] = corners.map(|p| p.as_dvec3());
     let (e1, e2, d) = (b - a, c - a, direction.as_dvec3());
     let (p, q) = (DVec3::new(e1.y * e2.z, e1.z * e2.x, e1.x * e2.y), DVec3::new(e1.z * e2.y, e1.x * e2.z, e1.y * e2.x));
     let (dot, permanent) = (d.dot(p - q), d.abs().dot(p.abs() + q.abs()));
-    if dot.abs() > 8.0 * U * permanent { if dot > 0.0 { 1 } else { -1 } } else { side_sign(corners, direction) }
+    if dot.abs() > 8.0 * U * permanent { if dot > 0.0 { 1 } else { -1 } } else { side_sign(corners, direction) as i8 }
 }
 
 /// Where a ray along `direction` leaves the triangle at the point with these `weights`, in f64.
@@ -56,7 +56,7 @@ const LEAST_SHARE: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// The axis to step along and the direction on it that leads to `side`: the axis of the largest normal component, unless rounding
 /// has emptied the normal.
-fn way_out(corners: &[GzCoord; 3], normal: DVec3, side: i32) -> Option<(usize, f64)> {
+fn way_out(corners: &[GzCoord; 3], normal: DVec3, side: i8) -> Option<(usize, f64)> {
     let largest = largest_axis(normal);
     [largest, 0, 1, 2].into_iter().find_map(|axis| match side_of(corners, GzCoord::AXES[axis]) {
         0 => None,
@@ -81,7 +81,7 @@ fn pulled_in(corners: &[GzCoord; 3], weights: [f64; 3], reach: f64, double_area:
 const LEAST_WEIGHT: f64 = 1.0 / (1u64 << 44) as f64;
 
 /// Whether `point` is strictly on the given side of the plane.
-fn is_beyond(corners: &[GzCoord; 3], point: DVec3, side: i32) -> bool {
+fn is_beyond(corners: &[GzCoord; 3], point: DVec3, side: i8) -> bool {
     let coord = |p: DVec3| robust::Coord3D { x: p.x, y: p.y, z: p.z };
     let [a, b, c] = corners.map(|p| coord(p.as_dvec3()));
     // Positive where the winding's normal points away from the point.
