@@ -19,13 +19,12 @@ pub fn report(args: &SceneArgs) -> Result<String, AppError> {
     threads::with(args.threads, || {
         let draft = load::scene(&args.scene, &job::overrides(args))?;
         draft.warnings.iter().for_each(|warning| say(&format!("gz: warning: {warning}")));
-        let needs = SceneNeeds::of(&draft.scene);
-        let scene = draft.place(needs)?;
-        Ok(describe(&args.scene.display().to_string(), &scene, &needs))
+        let (needs, dropped) = (SceneNeeds::of(&draft.scene), draft.dropped);
+        Ok(describe(&args.scene.display().to_string(), &draft.place(needs)?, dropped))
     })
 }
 
-fn describe(name: &str, scene: &Scene, needs: &SceneNeeds) -> String {
+fn describe(name: &str, scene: &Scene, dropped: u64) -> String {
     let mut text = String::new();
     let camera = &scene.camera;
     let used = scene.used.iter().filter(|&&n| n > 0).count();
@@ -41,7 +40,7 @@ fn describe(name: &str, scene: &Scene, needs: &SceneNeeds) -> String {
         args::fresnel_name(scene.rules.fresnel),
         args::antialias_name(scene.rules.antialias)
     );
-    let _ = writeln!(text, "triangles  {}", scene.tris.len());
+    let _ = writeln!(text, "triangles  {}, {dropped} dropped by the camera", scene.tris.len());
     if !bounds.is_empty() {
         let _ = writeln!(text, "bounds     {} to {} in trace space", point(bounds.min), point(bounds.max));
     }
@@ -58,7 +57,7 @@ fn describe(name: &str, scene: &Scene, needs: &SceneNeeds) -> String {
         let _ = writeln!(text, "  {name:<20} {kind}, {count} triangles");
     }
     let _ = writeln!(text, "textures   {}, {} bytes", scene.textures.len(), texture_bytes(scene));
-    let _ = write!(text, "needs\n{}", explain::needs_report(scene, needs));
+    let _ = write!(text, "needs\n{}", explain::needs_report(scene));
     let per_triangle = scene.tris.attributes().bytes_per_triangle();
     let _ = writeln!(text, "memory     {} bytes, {per_triangle} a triangle", scene.tris.bytes());
     text

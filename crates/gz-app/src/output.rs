@@ -58,8 +58,8 @@ pub fn rgb8(colors: &[GzColor], code: ColorCode) -> Vec<u8> {
 /// The byte of one channel of a linear colour. Below 0 and NaN give 0, above 1 gives 255.
 pub fn byte(channel: f32, code: ColorCode) -> u8 {
     match code {
-        ColorCode::Srgb => gz_shade::srgb_byte(channel),
-        ColorCode::Course12 => gz_shade::course12_byte(channel),
+        ColorCode::Srgb => gz_shade::color::srgb_byte(channel),
+        ColorCode::Course12 => gz_shade::color::course12_byte(channel),
     }
 }
 

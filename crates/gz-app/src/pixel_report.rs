@@ -7,7 +7,7 @@ use crate::progress::say;
 use crate::{args, job, load, output, stats, threads};
 use gz_core::glam::DVec2;
 use gz_core::{BruteForce, GzRay, Hit, RayQuery, Tile, TileGrid, TriBuffer};
-use gz_shade::{Scene, SceneNeeds, shade_frame};
+use gz_shade::{ExplainNode, RayKind, Scene, SceneNeeds, explain_pixel, shade_frame};
 use std::fmt::Write;
 
 /// Triangles on the ray that are listed at most.
@@ -70,10 +70,42 @@ fn describe(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, args: &Pixel
     }
     let area = Tile { x0: args.x, y0: args.y, x1: args.x + 1, y1: args.y + 1 };
     let frame = shade_frame(scene, needs, query, &TileGrid::of(area, 1), &|_| ());
-    let _ = writeln!(text, "rays       {}", stats::rays_by_kind(&frame.stats));
+    let _ = write!(text, "rays       {}\n{}", stats::rays_by_kind(&frame.stats), tree(scene, needs, query, args));
     for color in &frame.colors {
         let bytes = color.to_array().map(|channel| output::byte(channel, scene.rules.color_code));
         let _ = writeln!(text, "colour     {color} linear, {bytes:?} in a picture");
+    }
+    text
+}
+
+/// The rays of the pixel as a tree, each below the one it goes on from, with its share of the colour.
+fn tree(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, args: &PixelArgs) -> String {
+    let nodes = explain_pixel(scene, needs, query, args.x, args.y);
+    let mut text = String::new();
+    for (k, node) in nodes.iter().enumerate() {
+        if node.parent.is_none() {
+            let _ = writeln!(text, "sample {}, weight {}", node.sample, node.sample_weight);
+            text.push_str(&branch(scene, &nodes, k, 1));
+        }
+    }
+    text
+}
+
+/// Node `k` and those below it, `level` steps in.
+fn branch(scene: &Scene, nodes: &[ExplainNode], k: usize, level: usize) -> String {
+    let (node, indent) = (&nodes[k], "  ".repeat(level));
+    let kind = match node.kind {
+        RayKind::Primary => "primary ray",
+        RayKind::Mirror => "mirror ray",
+        RayKind::Glass => "glass ray",
+    };
+    let mut text = format!("{indent}{kind} from {} along {}, counts {}\n", node.ray.origin, node.ray.direction, node.factor);
+    let what = if node.hit.is_hit() { hit_line(scene, &node.hit) } else { "nothing: background".to_owned() };
+    let _ = writeln!(text, "{indent}  hits {what}");
+    let _ = writeln!(text, "{indent}  own colour {} times {}, with what comes from below: {}", node.local, node.keep, node.color);
+    // The depth of a scene is at most 32, so this goes no deeper either.
+    for child in (k + 1..nodes.len()).filter(|&child| nodes[child].parent == Some(k)) {
+        text.push_str(&branch(scene, nodes, child, level + 1));
     }
     text
 }

@@ -61,10 +61,10 @@ fn frame(job: &RenderJob) -> Result<String, AppError> {
         progress.warn(&format!("{} samples came out as NaN: please report the scene", frame.stats.nan_pixels));
     }
     let threads = rayon::current_num_threads();
-    let stats = RenderStats { job, scene: &scene, needs, area, frame: &frame.stats, threads, clock: &clock };
+    let stats = RenderStats { job, scene: &scene, area, frame: &frame.stats, threads, clock: &clock };
     if let Some(file) = &job.stats_json {
         file.write(format!("{:#}\n", stats.json()).as_bytes())?;
     }
     progress.finish(&stats.summary(), &stats.json());
-    Ok(if job.explain { explain::explain(&scene, &needs, &frame.stats) } else { String::new() })
+    Ok(if job.explain { explain::explain(&scene, &frame.stats) } else { String::new() })
 }

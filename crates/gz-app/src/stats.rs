@@ -3,7 +3,7 @@
 use crate::args;
 use crate::job::RenderJob;
 use gz_core::Tile;
-use gz_shade::{FrameStats, Scene, SceneNeeds};
+use gz_shade::{FrameStats, Scene};
 use serde_json::{Value, json};
 use std::time::Instant;
 
@@ -52,8 +52,6 @@ pub struct RenderStats<'a> {
     pub job: &'a RenderJob,
     /// The scene, placed.
     pub scene: &'a Scene,
-    /// What was stored and traced for.
-    pub needs: SceneNeeds,
     /// The pixels rendered.
     pub area: Tile,
     /// Rays and other counts.
@@ -95,7 +93,7 @@ impl RenderStats<'_> {
                 "per_triangle": scene.tris.attributes().bytes_per_triangle(),
                 "textures": crate::info::texture_bytes(scene),
             },
-            "needs": crate::explain::needs_in_use(&self.needs),
+            "needs": crate::explain::needs_in_use(scene),
             "rays": {
                 "primary": frame.primary_rays,
                 "shadow": frame.shadow_rays,
