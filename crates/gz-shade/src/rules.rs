@@ -17,6 +17,12 @@ pub struct ShadeRules {
     pub clamp_levels: bool,
     /// Gouraud colours and Phong normals are interpolated linearly in screen space at primary hits, as the homework does.
     pub screen_interpolation: bool,
+    /// The triangle itself decides sides: a light on the other side of it than the viewer gives nothing, mirror rays stay on the
+    /// viewer's side and glass rays go to the other, and a ray enters glass where corner normals (or the winding) say outside.
+    /// Otherwise interpolated normals decide alone, as in the course and in the paper's program.
+    pub geometric_sides: bool,
+    /// Flat shading takes its colour from the texture too. The course's flat mode ignores textures.
+    pub flat_textures: bool,
     /// How a mirror's colour joins the local one.
     pub mirror_blend: MirrorBlend,
     /// How glass joins.
@@ -106,6 +112,8 @@ impl ShadeRules {
         eye: Eye::Ray,
         clamp_levels: false,
         screen_interpolation: false,
+        geometric_sides: true,
+        flat_textures: true,
         mirror_blend: MirrorBlend::Physical,
         glass_blend: GlassBlend::Physical,
         reflect_last_light: false,
@@ -118,6 +126,8 @@ impl ShadeRules {
         eye: Eye::Fixed,
         clamp_levels: true,
         screen_interpolation: true,
+        geometric_sides: false,
+        flat_textures: false,
         color_code: ColorCode::Course12,
         ..Self::PHYSICAL
     };
@@ -126,6 +136,8 @@ impl ShadeRules {
     pub const PAPER: Self = Self {
         shadow: ShadowRule::Opaque,
         clamp_levels: true,
+        geometric_sides: false,
+        flat_textures: false,
         mirror_blend: MirrorBlend::Replace,
         glass_blend: GlassBlend::Add,
         color_code: ColorCode::Course12,
