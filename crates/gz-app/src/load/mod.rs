@@ -14,9 +14,13 @@ mod entries;
 mod inline;
 mod keys;
 mod lights;
+#[cfg(test)]
+mod meaning_tests;
 mod own_material;
 mod part;
 mod place;
+#[cfg(test)]
+mod reference_tests;
 mod scene_file;
 #[cfg(test)]
 mod scratch;
