@@ -10,8 +10,8 @@ use crate::{FrameStats, GlassBlend, MaterialKind, MirrorBlend, Scene, SceneNeeds
 use glam::DVec3;
 use gz_core::{GzColor, GzCoord, GzRay, leave_surface, side_of};
 
-/// Branches that weigh less than this of their pixel (in their strongest channel) end: 2^-16 is an eighth of the smallest step of a
-/// 12-bit picture, 2^-12, even if sixteen of them meet in a pixel it is not half a step of an 8-bit one.
+/// Branches that weigh less than this of their pixel, in their strongest channel, end. It is a sixteenth of a step of a 12-bit
+/// picture and less than a hundredth of one of an 8-bit picture, as long as what the branch sees is not much brighter than 1.
 const LEAST_WEIGHT: f32 = 1.0 / 65536.0;
 
 /// A ray that goes on from a hit.
