@@ -1,1 +1,8 @@
 //! Files in.
+
+mod mtl;
+pub mod obj;
+mod polygon;
+#[cfg(test)]
+mod testing;
+mod text;
