@@ -1,5 +1,6 @@
 //! Files in.
 
+pub mod asc;
 mod mtl;
 pub mod obj;
 mod polygon;
