@@ -2,6 +2,7 @@
 
 pub mod asc;
 mod mtl;
+mod normals;
 pub mod obj;
 mod polygon;
 #[cfg(test)]
