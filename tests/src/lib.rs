@@ -1,1 +1,5 @@
-//! Tests over the whole workspace.
+//! What the tests of the whole workspace share, and the measurements behind `cargo xtask verify`.
+#![forbid(unsafe_code)]
+
+pub mod homework;
+pub mod rendered;

@@ -1,9 +1,28 @@
 //! Scenes in, pictures out: the parts behind the command `gz`.
 #![forbid(unsafe_code)]
 
+pub mod accel;
+pub mod args;
+pub mod cli;
+pub mod compare;
 pub mod display;
 pub mod error;
+pub mod explain;
+pub mod hits_file;
 pub mod homework;
+pub mod info;
+pub mod job;
 pub mod load;
 pub mod mesh;
+pub mod new_file;
+pub mod output;
+pub mod pfm;
+pub mod picture;
+pub mod pixel_report;
+pub mod progress;
+pub mod render;
+pub mod sheet;
+pub mod stats;
 pub mod teapot;
+pub mod threads;
+pub mod view;

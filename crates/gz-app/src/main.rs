@@ -1,3 +1,8 @@
 //! The command gz.
 #![forbid(unsafe_code)]
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ExitCode::from(gz_app::cli::run(std::env::args_os()))
+}

@@ -196,7 +196,11 @@ impl GzCamera {
     pub fn shading_from_world(&self) -> GzMatrix {
         match self.spec.model {
             CameraModel::Pinhole => GzMatrix::IDENTITY,
-            _ => GzMatrix { 0: self.image_from_world().0.map(|[x, y, z, w]| [x, y, z, if w == 1.0 { 1.0 } else { 0.0 }]) },
+            _ => {
+                let row = |axis: DVec3| [axis.x, axis.y, axis.z, 0.0];
+                let [x, y, z] = self.axes;
+                GzMatrix([row(x), row(y), row(z), [0.0, 0.0, 0.0, 1.0]])
+            }
         }
     }
 

@@ -111,11 +111,12 @@ mod tests {
     /// The course's placement of the teapot, HW3 to HW6.
     fn course() -> MatrixStack {
         let mut stack = MatrixStack::new();
-        let s = 3.25;
+        // Four digits, as the course has them.
+        let (s, r) = (3.25, 7071.0 / 10_000.0);
         for rows in [
             [[s, 0.0, 0.0, 0.0], [0.0, s, 0.0, -3.25], [0.0, 0.0, s, 3.5], [0.0, 0.0, 0.0, 1.0]],
             [[0.866, 0.0, -0.5, 0.0], [0.0, 1.0, 0.0, 0.0], [0.5, 0.0, 0.866, 0.0], [0.0, 0.0, 0.0, 1.0]],
-            [[1.0, 0.0, 0.0, 0.0], [0.0, 0.7071, 0.7071, 0.0], [0.0, -0.7071, 0.7071, 0.0], [0.0, 0.0, 0.0, 1.0]],
+            [[1.0, 0.0, 0.0, 0.0], [0.0, r, r, 0.0], [0.0, -r, r, 0.0], [0.0, 0.0, 0.0, 1.0]],
         ] {
             stack.push(&GzMatrix(rows)).unwrap();
         }

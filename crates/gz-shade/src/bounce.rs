@@ -10,8 +10,8 @@ use crate::{FrameStats, GlassBlend, MaterialKind, MirrorBlend, Scene, SceneNeeds
 use glam::DVec3;
 use gz_core::{GzColor, GzCoord, GzRay, leave_surface, side_of};
 
-/// Branches that weigh less than this of their pixel (in their strongest channel) end: 2^-16 is an eighth of the smallest step of a
-/// 12-bit picture, 2^-12, even if sixteen of them meet in a pixel it is not half a step of an 8-bit one.
+/// Branches that weigh less than this of their pixel, in their strongest channel, end. It is a sixteenth of a step of a 12-bit
+/// picture and less than a hundredth of one of an 8-bit picture, as long as what the branch sees is not much brighter than 1.
 const LEAST_WEIGHT: f32 = 1.0 / 65536.0;
 
 /// A ray that goes on from a hit.
@@ -52,6 +52,19 @@ impl Meeting {
     fn cos(&self) -> f64 {
         (-self.d.dot(self.n)).clamp(0.0, 1.0)
     }
+
+    /// d - 2 |d.n| n with the normal as it is stored: where the ray comes against that normal, the paper's refraction program turned
+    /// the cosine and forgot the normal.
+    fn mistaken_reflection(&self) -> GzCoord {
+        let stored = if self.entering { self.n } else { -self.n };
+        (self.d - stored * (2.0 * self.cos())).normalize_or_zero().as_vec3()
+    }
+
+    /// n1 / n2 as the paper's program has it, without media: a ray along the normal goes from air into `ior`, one against it comes
+    /// out. That is the wrong way round for normals that point outside, and its refraction figure shows it.
+    fn sheet_eta(&self, ior: f32) -> f64 {
+        if self.entering { f64::from(ior) } else { 1.0 / f64::from(ior) }
+    }
 }
 
 impl Bouncer<'_> {
@@ -68,12 +81,14 @@ impl Bouncer<'_> {
 
     fn mirror(&mut self, id: u32, node: &Node, ior: Option<f32>) -> f32 {
         let rules = &self.scene.rules;
-        let meeting = self.meet(node);
+        let mistaken = self.last_light(node).filter(|_| rules.reflect_last_light);
+        let meeting = self.meet(node, mistaken.unwrap_or(node.ray.direction));
         // 1. The reflected share: all of it at an ideal mirror and where the paper's program does not ask.
         let share = match (rules.mirror_blend, ior) {
-            (MirrorBlend::Physical | MirrorBlend::Add, Some(ior)) => {
+            (MirrorBlend::Physical, Some(ior)) => {
                 reflectance(rules.fresnel, meeting.cos(), self.media.ior(node.media) / f64::from(ior))
             }
+            (MirrorBlend::Add, Some(ior)) => reflectance(rules.fresnel, meeting.cos(), meeting.sheet_eta(ior)),
             _ => 1.0,
         };
         let factor = self.scene.material(node.hit.tri).tint * share as f32;
@@ -81,9 +96,9 @@ impl Bouncer<'_> {
             return 1.0;
         }
         // 2. The direction.
-        let direction = match self.last_light(&meeting) {
-            Some(wrong) if rules.reflect_last_light => Some(wrong),
-            _ => self.on_side(&meeting, reflect(meeting.d, meeting.n), -meeting.to_side),
+        let direction = match mistaken {
+            Some(_) => Some(meeting.mistaken_reflection()),
+            None => self.on_side(&meeting, reflect(meeting.d, meeting.n), -meeting.to_side),
         };
         let branch = Branch { parent: id, kind: RayKind::Mirror, ray: node.ray, factor, media: node.media };
         let goes_on = self.emit(node, &meeting, direction, branch);
@@ -97,19 +112,23 @@ impl Bouncer<'_> {
 
     fn glass(&mut self, id: u32, node: &Node, ior: f32) -> f32 {
         let rules = &self.scene.rules;
-        let meeting = self.meet(node);
+        let meeting = self.meet(node, node.ray.direction);
         // 1. From which medium to which, and how much is reflected.
-        let medium = self.scene.tris.material(node.hit.tri);
-        let crossing = self.media.cross(node.media, medium, f64::from(ior), meeting.entering);
-        let eta = crossing.n1 / crossing.n2;
+        let (eta, after, unmatched, share) = match rules.glass_blend {
+            GlassBlend::Physical => {
+                let medium = self.scene.tris.material(node.hit.tri);
+                let crossing = self.media.cross(node.media, medium, f64::from(ior), meeting.entering);
+                let eta = crossing.n1 / crossing.n2;
+                (eta, crossing.after, crossing.unmatched, reflectance(rules.fresnel, meeting.cos(), eta) as f32)
+            }
+            GlassBlend::Add => (meeting.sheet_eta(ior), node.media, false, 0.0),
+        };
         let refracted = refract(meeting.d, meeting.n, eta);
-        let physical = rules.glass_blend == GlassBlend::Physical;
-        let share = if physical { reflectance(rules.fresnel, meeting.cos(), eta) as f32 } else { 0.0 };
         let through = if refracted.is_some() { self.scene.material(node.hit.tri).tint * (1.0 - share) } else { GzColor::ZERO };
         if self.is_cut(node, through + share) {
             return 1.0;
         }
-        self.stats.unmatched_exits += u64::from(crossing.unmatched);
+        self.stats.unmatched_exits += u64::from(unmatched);
         self.stats.total_reflections += u64::from(refracted.is_none());
         // 2. The reflected branch stays in its medium, the refracted one changes it.
         let branch = Branch { parent: id, kind: RayKind::Glass, ray: node.ray, factor: GzColor::splat(share), media: node.media };
@@ -119,23 +138,23 @@ impl Bouncer<'_> {
         }
         if let Some(refracted) = refracted {
             let direction = self.on_side(&meeting, refracted, meeting.to_side);
-            self.emit(node, &meeting, direction, Branch { factor: through, media: crossing.after, ..branch });
+            self.emit(node, &meeting, direction, Branch { factor: through, media: after, ..branch });
         }
         1.0
     }
 
-    /// The geometry of a hit as mirrors and glass see it.
+    /// The geometry of a hit as mirrors and glass see it, by a ray along `direction`.
     ///
     /// With geometric sides the triangle itself says where the ray comes from and whether that is outside; the shading normal, taken
     /// on that side, only bends directions. Where it leans away from the ray all the same (at the silhouette of a coarse mesh) it is
     /// brought back to where the ray grazes it: there all is reflected, as it is in the limit.
-    fn meet(&self, node: &Node) -> Meeting {
+    fn meet(&self, node: &Node, direction: GzCoord) -> Meeting {
         let tris = &self.scene.tris;
         let tri = node.hit.tri;
         let at = HitPoint::of(tris, tri, &node.ray);
-        let d = node.ray.direction.as_dvec3().normalize_or_zero();
+        let d = direction.as_dvec3().normalize_or_zero();
         let n = normal(tris, self.needs, tri, self.scene.material(tri).interpolate, at.weights);
-        let to_side = side_of(&at.corners, node.ray.direction);
+        let to_side = side_of(&at.corners, direction);
         if !self.scene.rules.geometric_sides {
             let entering = d.dot(n) < 0.0;
             return Meeting { at, d, n: if entering { n } else { -n }, to_side, entering };
@@ -163,9 +182,9 @@ impl Bouncer<'_> {
         (side_of(&meeting.at.corners, mirrored) == side).then_some(mirrored)
     }
 
-    /// The direction that the mistake behind the paper's refraction figure gives every mirror ray.
-    fn last_light(&self, meeting: &Meeting) -> Option<GzCoord> {
-        self.scene.lights.last().map(|light| light.arrive(meeting.at.point).direction)
+    /// The direction to the last light, which the mistake behind the paper's refraction figure takes for the ray's own.
+    fn last_light(&self, node: &Node) -> Option<GzCoord> {
+        self.scene.lights.last().map(|light| light.arrive(node.ray.at(node.hit.t)).direction)
     }
 
     /// Adds `branch` along `direction` unless it weighs too little or has no way to go; returns whether it was added.

@@ -44,9 +44,9 @@ pub fn light_share(k: &Coefficients, n: DVec3, l: DVec3, e: DVec3) -> GzColor {
 ///
 /// An integer exponent is repeated squaring, others go through `libm`: the same bits on every machine.
 pub fn power(base: f64, exponent: f32) -> f64 {
-    /// Beyond this every base below 1 - 2^-10 has long become 0, and squaring would still be exact enough.
+    /// Beyond this a highlight is smaller than any pixel; `libm` may do it.
     const GREATEST_INTEGER: f32 = 65536.0;
-    if exponent < 0.0 || exponent > GREATEST_INTEGER || exponent.fract() != 0.0 {
+    if !(0.0..=GREATEST_INTEGER).contains(&exponent) || exponent.fract() != 0.0 {
         return libm::pow(base, f64::from(exponent));
     }
     let (mut result, mut square, mut bits) = (1.0, base, exponent as u32);

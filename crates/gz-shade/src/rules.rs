@@ -27,7 +27,8 @@ pub struct ShadeRules {
     pub mirror_blend: MirrorBlend,
     /// How glass joins.
     pub glass_blend: GlassBlend,
-    /// The mistake behind the paper's refraction figure: every mirror ray has the direction of the last light.
+    /// The mistakes behind the paper's refraction figure: at a mirror the direction to the last light stands in for the ray's own, in
+    /// the reflected share and in the direction d - 2 |d.n| n, in which the normal is not turned against the ray.
     pub reflect_last_light: bool,
     /// How colours are written to a picture.
     pub color_code: ColorCode,
@@ -78,9 +79,10 @@ pub enum Eye {
 pub enum MirrorBlend {
     /// local * (1 - R) + tint * R * reflected with R from Fresnel, or R = 1 without an index; a missed ray shows the background.
     Physical,
-    /// The reflected colour replaces the local one; a ray that misses leaves the local one (the paper's demonstration).
+    /// tint * reflected replaces the local colour; a ray that misses leaves the local one (the paper's demonstration).
     Replace,
-    /// local + R * reflected; a ray that misses adds nothing (the paper's refraction program).
+    /// local + tint * R * reflected, R without media as in [`GlassBlend::Add`]; a ray that misses adds nothing (the paper's refraction
+    /// program).
     Add,
 }
 
@@ -89,7 +91,9 @@ pub enum MirrorBlend {
 pub enum GlassBlend {
     /// R * reflected + (1 - R) * tint * refracted, on top of the local colour.
     Physical,
-    /// local + refracted, nothing reflected (the paper's refraction program).
+    /// local + tint * refracted, nothing reflected; a ray that misses adds nothing, total internal reflection neither (the paper's
+    /// refraction program). No media are kept: a ray along the normal goes from air into the glass, one against it comes out, which
+    /// is the wrong way round for normals that point outside.
     Add,
 }
 

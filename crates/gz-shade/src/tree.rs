@@ -80,9 +80,10 @@ impl Tree {
         self.media.clear();
     }
 
-    /// Follows mirror and glass rays, level by level, from the roots; each kind of a level is one batch.
+    /// Follows mirror and glass rays, level by level, from the roots; each kind of a level is one batch. With a depth limit of 0 no
+    /// bounce was asked for, and none counts as cut.
     pub(crate) fn grow(&mut self, scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, stats: &mut FrameStats) {
-        if !(needs.mirrors || needs.glass) || !scene.has_secondary_rays() {
+        if !(needs.mirrors || needs.glass) || scene.rules.depth == 0 || !scene.has_secondary_rays() {
             return;
         }
         let mut level = 0..self.nodes.len();

@@ -42,6 +42,8 @@ pub(super) struct RenderKeys {
     pub(super) reflect_last_light: Option<bool>,
     pub(super) clamp_levels: Option<bool>,
     pub(super) screen_interpolation: Option<bool>,
+    pub(super) geometric_sides: Option<bool>,
+    pub(super) flat_textures: Option<bool>,
     pub(super) color_code: Option<Word<ColorCode>>,
 }
 

@@ -31,7 +31,7 @@ pub(super) fn scene_with(path: &Path, overrides: &Overrides, course: Option<&Pat
     match extension(path).as_str() {
         "toml" => from_toml(path, overrides, course),
         "obj" | "asc" => bare::scene(path, overrides),
-        _ => Err(LoadError::bad(path, None, "not a scene: .toml, .obj and .asc can be read")),
+        _ => Err(LoadError::bad(path, None, "a scene is a .toml, .obj or .asc file")),
     }
 }
 

@@ -93,6 +93,10 @@ fn each_mistake_about_a_mesh_is_one_line_with_its_place() {
             "place = [{ rotate_x = 1, scale = 1 }]",
             "s.toml:6: a step of place is one of scale, rotate_x, rotate_y, rotate_z, translate and matrix",
         ),
+        (
+            "place = [{ scale = 1e38 }, { scale = 1e38 }, { scale = 1e38 }]",
+            "s.toml:4: the steps of place together leave the range of f64",
+        ),
         ("place = [{}]", "s.toml:6: a step of place is one of scale, rotate_x, rotate_y, rotate_z, translate and matrix"),
         (
             "place = [{ turn = 1 }]",
@@ -157,8 +161,8 @@ fn each_mistake_about_the_camera_is_one_line_with_its_place() {
 fn files_that_are_no_scenes_are_told_apart() {
     let folder = Folder::new().with("a.stl", "").with("bad.toml", b"a = 1\nb = \xff\n".as_slice()).with("empty.asc", "\r");
     let says = |name| folder.read(name, &Overrides::default()).unwrap_err();
-    assert_eq!(says("a.stl"), "a.stl: not a scene: .toml, .obj and .asc can be read");
-    assert_eq!(says("none"), "none: not a scene: .toml, .obj and .asc can be read");
+    assert_eq!(says("a.stl"), "a.stl: a scene is a .toml, .obj or .asc file");
+    assert_eq!(says("none"), "none: a scene is a .toml, .obj or .asc file");
     assert_eq!(says("none.toml"), "none.toml: no such file");
     assert_eq!(says("none.obj"), "none.obj: no such file");
     assert_eq!(says("bad.toml"), "bad.toml:2: not UTF-8 text");

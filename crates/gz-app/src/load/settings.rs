@@ -121,6 +121,8 @@ fn rules(text: SceneText<'_>, keys: &RenderKeys, mode: Mode) -> Result<ShadeRule
     put(&mut rules.color_code, keys.color_code);
     rules.reflect_last_light = keys.reflect_last_light.unwrap_or(rules.reflect_last_light);
     rules.clamp_levels = keys.clamp_levels.unwrap_or(rules.clamp_levels);
+    rules.geometric_sides = keys.geometric_sides.unwrap_or(rules.geometric_sides);
+    rules.flat_textures = keys.flat_textures.unwrap_or(rules.flat_textures);
     rules.screen_interpolation = keys.screen_interpolation.unwrap_or(rules.screen_interpolation);
     Ok(rules)
 }

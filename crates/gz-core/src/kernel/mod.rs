@@ -1,34 +1,26 @@
-//! Ray against triangle.
+//! Ray against triangle: a conservative filter, a certified f64 test, and an exact stage behind both.
 
-use crate::{GzCoord, GzRay, Hit};
+mod certify;
+mod dyadic;
+mod exact;
+pub(crate) mod filter;
+mod group;
+mod order;
+mod plane;
 
-/// Which ray-triangle test answers.
+pub use certify::hit_weights;
+pub(crate) use exact::side_sign;
+pub use filter::FilterRay;
+pub use group::TriGroup;
+pub use order::{Closest, is_hit};
+pub(crate) use plane::plane_then_inside;
+
+/// Which ray-triangle test answers a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kernel {
-    /// Exact: the specification.
+    /// Exact: filter, certified f64 test, exact stage. The specification.
     #[default]
     Certified,
-    /// The paper's: plane first, then inside test.
+    /// The paper's, in f32: plane first, then inside test. For lessons and comparison.
     Plane,
-}
-
-/// Weights of the three corners where the line of `ray` meets the triangle, in f64; at least 0, sum 1 up to rounding.
-pub fn hit_weights(ray: &GzRay, corners: &[GzCoord; 3]) -> [f64; 3] {
-    let d = ray.direction.as_dvec3();
-    let [a, b, c] = corners.map(|p| p.as_dvec3() - ray.origin);
-    let (u, v, w) = (d.dot(b.cross(c)), d.dot(c.cross(a)), d.dot(a.cross(b)));
-    let sum = u + v + w;
-    [u / sum, v / sum, w / sum]
-}
-
-pub(crate) fn plain(ray: &GzRay, corners: &[GzCoord; 3]) -> Option<Hit> {
-    let d = ray.direction.as_dvec3();
-    let [a, b, c] = corners.map(|p| p.as_dvec3() - ray.origin);
-    let (u, v, w) = (d.dot(b.cross(c)), d.dot(c.cross(a)), d.dot(a.cross(b)));
-    let sum = u + v + w;
-    if sum == 0.0 || !((u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0)) {
-        return None;
-    }
-    let t = (a.dot(b.cross(c)) / sum) as f32;
-    (t > ray.tmin && t < ray.tmax).then(|| Hit { t, tri: 0, u: (v / sum) as f32, v: (w / sum) as f32 })
 }

@@ -1,1 +1,81 @@
-//! SIMD levels.
+//! What the processor offers, found at run time. The only unsafe code of the project.
+#![allow(unsafe_code)]
+
+mod control;
+mod lanes;
+
+use crate::TriId;
+use crate::kernel::filter::{Block, FilterRay, filter_body};
+pub use control::with_default_float_control;
+pub use lanes::{Lanes, Task, dispatch};
+use std::sync::OnceLock;
+
+/// A set of vector instructions that kernels are compiled for. Answers do not depend on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SimdLevel {
+    /// What the build target guarantees.
+    Portable,
+    /// AVX2 with fused multiply-add, 8 f32 at a time.
+    Avx2,
+    /// AVX-512 F, VL, DQ and BW, 16 f32 at a time.
+    Avx512,
+}
+
+impl SimdLevel {
+    /// The best level of this machine.
+    pub fn best() -> Self {
+        static BEST: OnceLock<SimdLevel> = OnceLock::new();
+        *BEST.get_or_init(|| Self::available().last().copied().unwrap_or(Self::Portable))
+    }
+
+    /// All levels that this machine can run, the least first.
+    pub fn available() -> &'static [Self] {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+            let avx512 = avx2
+                && is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512vl")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512bw");
+            if avx512 {
+                return &[Self::Portable, Self::Avx2, Self::Avx512];
+            }
+            if avx2 {
+                return &[Self::Portable, Self::Avx2];
+            }
+        }
+        &[Self::Portable]
+    }
+
+    /// This level, or the best available one where this machine lacks it.
+    #[must_use]
+    pub fn or_best(self) -> Self {
+        self.min(Self::best())
+    }
+}
+
+/// The conservative filter over `blocks` at `level`: see [`filter_body`].
+pub(crate) fn filter(level: SimdLevel, blocks: &[Block], ray: &FilterRay, first: TriId, out: &mut Vec<TriId>) {
+    match level.or_best() {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: `or_best` returns no level above `best`, and `available` lists this one only where its features were detected.
+        SimdLevel::Avx512 => unsafe { filter_avx512(blocks, ray, first, out) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        SimdLevel::Avx2 => unsafe { filter_avx2(blocks, ray, first, out) },
+        _ => filter_body(blocks, ray, first, out),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma")]
+fn filter_avx512(blocks: &[Block], ray: &FilterRay, first: TriId, out: &mut Vec<TriId>) {
+    filter_body(blocks, ray, first, out);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn filter_avx2(blocks: &[Block], ray: &FilterRay, first: TriId, out: &mut Vec<TriId>) {
+    filter_body(blocks, ray, first, out);
+}

@@ -1,0 +1,148 @@
+//! A render as asked for: options checked as far as they can be without the scene.
+
+use crate::accel::Accel;
+use crate::cli::{RenderArgs, SceneArgs};
+use crate::error::AppError;
+use crate::load::Overrides;
+use crate::new_file::NewFile;
+use crate::output::ImageFormat;
+use crate::progress::ProgressMode;
+use crate::view::View;
+use gz_core::Tile;
+use gz_shade::{Antialias, Scene};
+use std::path::{Path, PathBuf};
+
+/// The greatest number of pixels rendered at once: 3 GB of colours.
+pub const MAX_PIXELS: u64 = 1 << 28;
+
+/// What `gz render` was asked to do.
+#[derive(Clone, Debug)]
+pub struct RenderJob {
+    /// The scene file.
+    pub scene: PathBuf,
+    /// What the command line says over the scene.
+    pub overrides: Overrides,
+    /// The picture.
+    pub output: NewFile,
+    /// Its format.
+    pub format: ImageFormat,
+    /// What answers rays.
+    pub accel: Accel,
+    /// Threads; 0 for all cores.
+    pub threads: usize,
+    /// Edge length of a tile.
+    pub tile: u32,
+    /// The part of the picture to render, if not all.
+    pub crop: Option<Tile>,
+    /// How progress is shown.
+    pub progress: ProgressMode,
+    /// Where statistics go.
+    pub stats_json: Option<NewFile>,
+    /// Where the T-buffer goes.
+    pub tbuffer: Option<NewFile>,
+    /// What to show in place of colours.
+    pub view: Option<View>,
+    /// Whether to say what the scene needs.
+    pub explain: bool,
+}
+
+impl RenderJob {
+    /// The job of these options. All that can be refused without rendering is refused here.
+    ///
+    /// # Errors
+    ///
+    /// [`AppError::Usage`] for options that contradict each other, [`AppError::Io`] for a file that cannot be written.
+    pub fn of(args: &RenderArgs) -> Result<Self, AppError> {
+        let accel = Accel::of(&args.scene.accel)?;
+        let scene = args.scene.scene.clone();
+        let output = match &args.output {
+            Some(path) => path.clone(),
+            None => default_output(&scene),
+        };
+        let format = ImageFormat::of(&output)?;
+        let aa = args.scene.aa.unwrap_or(Antialias::None);
+        if args.tbuffer.is_some() && aa != Antialias::None {
+            return Err(tbuffer_with_antialiasing());
+        }
+        // Everything is asked for before anything is touched: two names for one file would lose one of them.
+        let mut taken: Vec<PathBuf> = vec![scene.clone()];
+        let mut new_file = |path: &Path| -> Result<NewFile, AppError> {
+            let file = NewFile::at(path)?;
+            if let Some(other) = taken.iter().find(|other| file.is(other)) {
+                let other = if *other == scene { "the scene itself".to_owned() } else { format!("also {}", other.display()) };
+                return Err(AppError::Usage(format!("{}: would be overwritten: it is {other}", path.display())));
+            }
+            taken.push(path.to_owned());
+            Ok(file)
+        };
+        Ok(Self {
+            output: new_file(&output)?,
+            format,
+            stats_json: args.stats_json.as_deref().map(&mut new_file).transpose()?,
+            tbuffer: args.tbuffer.as_deref().map(&mut new_file).transpose()?,
+            overrides: overrides(&args.scene),
+            scene,
+            accel,
+            threads: args.scene.threads,
+            tile: args.tile,
+            crop: args.crop,
+            progress: args.progress,
+            view: args.view,
+            explain: args.explain,
+        })
+    }
+
+    /// The pixels to render of `scene`, having checked that this job can be done on it.
+    ///
+    /// # Errors
+    ///
+    /// [`AppError::Usage`] for a crop outside of the picture, too many pixels, or a T-buffer of an antialiased scene.
+    pub fn area(&self, scene: &Scene) -> Result<Tile, AppError> {
+        let (width, height) = (scene.camera.width(), scene.camera.height());
+        let area = self.crop.unwrap_or(Tile { x0: 0, y0: 0, x1: width, y1: height });
+        if area.x1 > width || area.y1 > height {
+            return Err(AppError::Usage(format!(
+                "--crop {},{},{},{} reaches beyond the picture of {width}x{height}",
+                area.x0, area.y0, area.x1, area.y1
+            )));
+        }
+        if u64::from(area.width()) * u64::from(area.height()) > MAX_PIXELS {
+            return Err(AppError::Usage(format!(
+                "a picture of {}x{} has more than {MAX_PIXELS} pixels: render it in parts with --crop",
+                area.width(),
+                area.height()
+            )));
+        }
+        if self.tbuffer.is_some() && scene.rules.antialias != Antialias::None {
+            return Err(tbuffer_with_antialiasing());
+        }
+        Ok(area)
+    }
+}
+
+/// The changes to the scene that these options ask for.
+pub fn overrides(args: &SceneArgs) -> Overrides {
+    Overrides { size: args.size, camera: args.camera, depth: args.depth, aa: args.aa, fresnel: args.fresnel }
+}
+
+/// The scene's name with `.png`, in the current folder.
+fn default_output(scene: &Path) -> PathBuf {
+    let mut name = scene.file_stem().unwrap_or("picture".as_ref()).to_owned();
+    name.push(".png");
+    PathBuf::from(name)
+}
+
+fn tbuffer_with_antialiasing() -> AppError {
+    AppError::Usage("--tbuffer: an antialiased pixel has no single T-value, use --aa none".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_picture_is_named_after_the_scene() {
+        assert_eq!(default_output(Path::new("assets/scenes/teapot.toml")), Path::new("teapot.png"));
+        assert_eq!(default_output(Path::new("a.b.obj")), Path::new("a.b.png"));
+    }
+}

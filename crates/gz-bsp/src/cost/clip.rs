@@ -1,0 +1,83 @@
+//! Triangles as a builder sees them: a number and the box of the part that lies in a cell.
+
+use glam::{DVec3, Vec3};
+use gz_core::{Bounds, TriId};
+
+/// A triangle's part in a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Reference {
+    pub(crate) tri: TriId,
+    /// A box around the part, never too small.
+    pub(crate) bounds: Bounds,
+}
+
+impl Reference {
+    /// The whole triangle.
+    pub(crate) fn whole(tri: TriId, corners: &[Vec3; 3]) -> Self {
+        Self { tri, bounds: Bounds::of(*corners) }
+    }
+
+    /// The parts below and above `axis = plane`, for a part that crosses the plane: boxes around the corners of each side and the points
+    /// where edges cross, cut with the box before.
+    pub(crate) fn split(&self, axis: usize, plane: f32, corners: &[Vec3; 3]) -> [Self; 2] {
+        let mut sides = [Bounds::EMPTY; 2];
+        let p = f64::from(plane);
+        for k in 0..3 {
+            let (a, b) = (corners[k], corners[(k + 1) % 3]);
+            for (side, bounds) in sides.iter_mut().enumerate() {
+                let inside = if side == 0 { a[axis] <= plane } else { a[axis] >= plane };
+                if inside {
+                    *bounds = bounds.grown_by(a);
+                }
+            }
+            if (a[axis] < plane && b[axis] > plane) || (a[axis] > plane && b[axis] < plane) {
+                let (a, b) = (a.as_dvec3(), b.as_dvec3());
+                let at = a + (b - a) * ((p - a[axis]) / (b[axis] - a[axis]));
+                // Six roundings of numbers up to twice the largest coordinate of the edge, and one to f32: 16 u of it covers them.
+                let pad = a.abs().max(b.abs()) * (8.0 * f64::EPSILON);
+                let (low, high) = (round_down(at - pad), round_up(at + pad));
+                sides = sides.map(|s| s.grown_by(low).grown_by(high));
+            }
+        }
+        let [mut lower, mut upper] = sides.map(|s| Bounds { min: s.min.max(self.bounds.min), max: s.max.min(self.bounds.max) });
+        lower.max[axis] = lower.max[axis].min(plane);
+        upper.min[axis] = upper.min[axis].max(plane);
+        // A part that is empty after all, because the box before had cut it off, keeps a box on its side rather than none.
+        [lower, upper].map(|bounds| Self { tri: self.tri, bounds })
+    }
+}
+
+fn round_down(p: DVec3) -> Vec3 {
+    Vec3::from_array(p.to_array().map(|x| {
+        let r = x as f32;
+        if f64::from(r) > x { r.next_down() } else { r }
+    }))
+}
+
+fn round_up(p: DVec3) -> Vec3 {
+    -round_down(-p)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_cover_the_triangle_and_stay_on_their_side() {
+        let corners = [[0.0, 0.0, 0.0], [3.0, 0.1, 7.0], [0.7, 5.0, -2.0]].map(Vec3::from_array);
+        let whole = Reference::whole(0, &corners);
+        for (axis, plane) in [(0, 1.0), (1, 0.05), (2, 0.3), (2, -1.9)] {
+            let [lower, upper] = whole.split(axis, plane, &corners);
+            assert!(lower.bounds.max[axis] <= plane && upper.bounds.min[axis] >= plane);
+            for k in 0..400 {
+                let (u, v) = ((k % 20) as f32 / 19.0, (k / 20) as f32 / 19.0);
+                let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                let p = corners[0] + (corners[1] - corners[0]) * u + (corners[2] - corners[0]) * v;
+                let part = if p[axis] <= plane { lower } else { upper };
+                let slack = Vec3::splat(1e-6);
+                assert!(Bounds { min: part.bounds.min - slack, max: part.bounds.max + slack }.holds(p), "{axis} {plane} {p}");
+            }
+            assert!(lower.bounds.area() < whole.bounds.area() && upper.bounds.area() < whole.bounds.area());
+        }
+    }
+}

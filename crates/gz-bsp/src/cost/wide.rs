@@ -1,0 +1,168 @@
+//! Nodes of eight cells, and leaves of groups of eight triangles.
+
+use super::build::{Cell, Content, build};
+use super::split::CostModel;
+use gz_core::kernel::TriGroup;
+use gz_core::{Bounds, SimdLevel, TriBuffer};
+
+/// Cells of a node.
+pub(crate) const WIDTH: usize = 8;
+
+/// Eight cells with their tight boxes, 224 bytes. Unused cells have a box that no ray crosses.
+#[derive(Clone, Debug, PartialEq)]
+#[repr(C, align(32))]
+pub(crate) struct WideNode {
+    /// `planes[2 * axis]` are the lower ends, `planes[2 * axis + 1]` the upper ones.
+    pub(crate) planes: [[f32; WIDTH]; 6],
+    pub(crate) children: [Child; WIDTH],
+}
+
+/// What a cell holds: nothing, a node, or a run of groups.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub(crate) struct Child(u32);
+
+/// A child taken apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    Node(usize),
+    Groups { first: usize, count: usize },
+}
+
+impl Child {
+    const LEAF: u32 = 1 << 31;
+    const COUNT_SHIFT: u32 = 28;
+    const FIRST_MASK: u32 = (1 << Self::COUNT_SHIFT) - 1;
+    /// The root is nobody's child.
+    const NONE: Self = Self(0);
+
+    fn node(index: usize) -> Self {
+        assert!(index != 0 && index < Self::LEAF as usize, "a tree of {index} nodes is beyond what an index holds");
+        Self(index as u32)
+    }
+
+    fn groups(first: usize, count: usize) -> Self {
+        assert!(first <= Self::FIRST_MASK as usize, "a tree of {first} groups is beyond what an index holds");
+        assert!((1..=8).contains(&count), "a leaf has one to eight groups");
+        Self(Self::LEAF | ((count - 1) as u32) << Self::COUNT_SHIFT | first as u32)
+    }
+
+    #[inline(always)]
+    pub(crate) fn target(self) -> Target {
+        if self.0 & Self::LEAF == 0 {
+            Target::Node(self.0 as usize)
+        } else {
+            let count = (self.0 >> Self::COUNT_SHIFT & 7) as usize + 1;
+            Target::Groups { first: (self.0 & Self::FIRST_MASK) as usize, count }
+        }
+    }
+
+    pub(crate) fn is_none(self) -> bool {
+        self == Self::NONE
+    }
+}
+
+impl WideNode {
+    const EMPTY: Self = Self {
+        planes: [
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+        ],
+        children: [Child::NONE; WIDTH],
+    };
+
+    fn set(&mut self, slot: usize, bounds: &Bounds, child: Child) {
+        for axis in 0..3 {
+            self.planes[2 * axis][slot] = bounds.min[axis];
+            self.planes[2 * axis + 1][slot] = bounds.max[axis];
+        }
+        self.children[slot] = child;
+    }
+
+    pub(crate) fn bounds(&self, slot: usize) -> Bounds {
+        let at = |end: usize| [0, 1, 2].map(|axis| self.planes[2 * axis + end][slot]).into();
+        Bounds { min: at(0), max: at(1) }
+    }
+}
+
+/// The default tree: a BSP tree whose planes, depth and leaves are chosen by expected cost.
+#[derive(Debug)]
+pub struct BspTree<'a> {
+    pub(crate) tris: &'a TriBuffer,
+    pub(crate) level: SimdLevel,
+    /// The root is the first; a tree without triangles has one node without cells.
+    pub(crate) nodes: Vec<WideNode>,
+    pub(crate) groups: Vec<TriGroup>,
+    /// The greatest magnitude of a coordinate.
+    pub(crate) reach: f32,
+}
+
+impl<'a> BspTree<'a> {
+    /// Builds the tree of `tris`, over all cores with the feature `rayon`; its bytes do not depend on their number.
+    pub fn build(tris: &'a TriBuffer) -> Self {
+        Self::with_cost(tris, CostModel::default())
+    }
+
+    /// The same by another cost model.
+    pub fn with_cost(tris: &'a TriBuffer, model: CostModel) -> Self {
+        let mut tree =
+            Self { tris, level: SimdLevel::best(), nodes: Vec::new(), groups: Vec::new(), reach: tris.bounds().reach() };
+        let root = build(tris, model);
+        tree.place(&root);
+        tree.nodes.shrink_to_fit();
+        tree.groups.shrink_to_fit();
+        tree
+    }
+
+    /// The same tree walked with another set of vector instructions; where this machine lacks it, the best that it has.
+    #[must_use]
+    pub fn with_simd(self, level: SimdLevel) -> Self {
+        Self { level: level.or_best(), ..self }
+    }
+
+    /// Whether both trees are equal to the last bit, as builds of one buffer are.
+    pub fn same_bytes(&self, other: &Self) -> bool {
+        self.nodes == other.nodes && self.groups == other.groups
+    }
+
+    /// Bytes beyond the triangle buffer.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.groups[..])
+    }
+
+    /// Appends the node of `cell` with its eight largest cells, and all below; returns its index.
+    fn place(&mut self, cell: &Cell) -> usize {
+        let index = self.nodes.len();
+        self.nodes.push(WideNode::EMPTY);
+        let mut cells = vec![cell];
+        // Open the largest cell again and again: its cut is the one that a ray most likely meets.
+        while cells.len() < WIDTH {
+            let open = |c: &&Cell| matches!(c.content, Content::Halves(_));
+            let largest = (0..cells.len())
+                .filter(|&k| open(&cells[k]))
+                .max_by(|&a, &b| cells[a].bounds.area().total_cmp(&cells[b].bounds.area()).then(b.cmp(&a)));
+            let Some(k) = largest else { break };
+            let Content::Halves(halves) = &cells[k].content else { break };
+            let [lower, upper] = &**halves;
+            cells[k] = lower;
+            cells.insert(k + 1, upper);
+        }
+        for (slot, cell) in cells.into_iter().enumerate() {
+            let child = match &cell.content {
+                Content::Leaf(ids) if ids.is_empty() => continue,
+                Content::Leaf(ids) => {
+                    let first = self.groups.len();
+                    self.groups.extend(ids.chunks(8).map(|ids| TriGroup::new(ids, self.tris.positions())));
+                    Child::groups(first, self.groups.len() - first)
+                }
+                Content::Halves(_) => Child::node(self.place(cell)),
+            };
+            self.nodes[index].set(slot, &cell.bounds, child);
+        }
+        index
+    }
+}

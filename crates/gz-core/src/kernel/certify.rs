@@ -1,0 +1,152 @@
+//! The f64 test with its error bound: it answers when the bound proves the answer, else it says so.
+//!
+//! u = 2^-53 is the unit roundoff of f64. Inputs are f32 vertices and an origin within [2^-150, 2^128] or 0, so no product of this
+//! file under- or overflows, and each operation errs by at most a factor 1 + u.
+
+use super::exact::ExactHit;
+use crate::{GzCoord, GzRay};
+use glam::DVec3;
+
+const U: f64 = f64::EPSILON / 2.0;
+
+/// A triple product d.(b x c) of differences b and c, each rounded once: a term d_x b_y c_z passes 2 differences, the product b_y c_z,
+/// the subtraction, the product with d_x and at most 2 additions, 7 roundings, so it errs by at most ((1 + u)^7 - 1) times the
+/// permanent (the sum of the terms' magnitudes). The computed permanent is itself at least (1 - 7u) of the true one. 8u covers both.
+const VOLUME_BOUND: f64 = 8.0 * U;
+
+/// The same for N . A: one more rounded difference in each term.
+const DISTANCE_BOUND: f64 = 9.0 * U;
+
+/// A number and how far from it the true one may be.
+#[derive(Clone, Copy)]
+struct Bounded {
+    value: f64,
+    error: f64,
+}
+
+impl Bounded {
+    /// -1 or 1 when proved, 0 when not.
+    fn proved_sign(self) -> i32 {
+        if self.value > self.error {
+            1
+        } else if self.value < -self.error {
+            -1
+        } else {
+            0
+        }
+    }
+}
+
+/// d.(b x c) with its error, for rounded differences b, c.
+fn volume(d: DVec3, b: DVec3, c: DVec3, bound: f64) -> Bounded {
+    let (px, qx) = (b.y * c.z, b.z * c.y);
+    let (py, qy) = (b.z * c.x, b.x * c.z);
+    let (pz, qz) = (b.x * c.y, b.y * c.x);
+    let value = d.x * (px - qx) + d.y * (py - qy) + d.z * (pz - qz);
+    let permanent = d.x.abs() * (px.abs() + qx.abs()) + d.y.abs() * (py.abs() + qy.abs()) + d.z.abs() * (pz.abs() + qz.abs());
+    Bounded { value, error: bound * permanent }
+}
+
+/// What f64 can say of a ray and a triangle.
+pub(crate) enum Verdict {
+    /// Proved: no hit in the ray's interval.
+    Miss,
+    /// Proved: a hit in the ray's interval, its t between these.
+    Hit {
+        /// At most t.
+        lo: f64,
+        /// At least t.
+        hi: f64,
+    },
+    /// Ask the exact stage.
+    Unsure,
+}
+
+/// Volumes of the ray's line against the three edges.
+fn volumes(ray: &GzRay, corners: &[GzCoord; 3]) -> [Bounded; 3] {
+    let d = ray.direction.as_dvec3();
+    let [a, b, c] = corners.map(|p| p.as_dvec3() - ray.origin);
+    [volume(d, b, c, VOLUME_BOUND), volume(d, c, a, VOLUME_BOUND), volume(d, a, b, VOLUME_BOUND)]
+}
+
+/// An interval that holds t = N.A / N.d with N = (b - a) x (c - a), or `None` when N.d is not proved to differ from 0.
+///
+/// The form with N loses far fewer digits than A.(B x C) when the triangle is small and far.
+fn t_interval(ray: &GzRay, corners: &[GzCoord; 3]) -> Option<(f64, f64)> {
+    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    let (e1, e2) = (b - a, c - a);
+    let m = volume(a - ray.origin, e1, e2, DISTANCE_BOUND);
+    let d = volume(ray.direction.as_dvec3(), e1, e2, VOLUME_BOUND);
+    let magnitude = d.value.abs();
+    // |M/D - m/d| <= (error of M + |m/d| error of D) / (|d| - error of D); a quarter of |d| caps the denominator's loss at 4/3,
+    // 1.5 leaves room for the roundings of this line and 2u |t| for that of the quotient.
+    if magnitude <= 4.0 * d.error {
+        return None;
+    }
+    let t = m.value / d.value;
+    let error = 1.5 * ((m.error + t.abs() * d.error) / magnitude) + 2.0 * U * t.abs();
+    Some((t - error, t + error))
+}
+
+/// The f64 test of a valid ray against a triangle.
+pub(crate) fn certify(ray: &GzRay, corners: &[GzCoord; 3]) -> Verdict {
+    let signs = volumes(ray, corners).map(Bounded::proved_sign);
+    let (any_above, any_below) = (signs.contains(&1), signs.contains(&-1));
+    if any_above && any_below {
+        return Verdict::Miss;
+    }
+    if signs.contains(&0) {
+        return Verdict::Unsure;
+    }
+    let Some((lo, hi)) = t_interval(ray, corners) else { return Verdict::Unsure };
+    let (tmin, tmax) = (f64::from(ray.tmin), f64::from(ray.tmax));
+    if hi <= tmin || lo >= tmax {
+        Verdict::Miss
+    } else if lo > tmin && hi < tmax {
+        Verdict::Hit { lo, hi }
+    } else {
+        Verdict::Unsure
+    }
+}
+
+/// T, u and v of a hit, for a ray and a triangle that are known to meet.
+///
+/// T is the exact t rounded once: in f64 when both ends of its interval round alike, else by the exact stage. u = V/D and v = W/D are
+/// within 1 ulp or 2^-40 of the true ones. A pure function of ray and triangle, so every query gives these bits.
+pub(crate) fn t_u_v(ray: &GzRay, corners: &[GzCoord; 3]) -> (f32, f32, f32) {
+    let rounded = t_interval(ray, corners).map(|(lo, hi)| (lo as f32, hi as f32));
+    let t = match rounded {
+        // Equal bits, so that -0 and 0 are told apart.
+        Some((lo, hi)) if lo.to_bits() == hi.to_bits() => Some(lo),
+        _ => None,
+    };
+    let weights = proved_weights(ray, corners);
+    if let (Some(t), Some([_, u, v])) = (t, weights) {
+        return (t, u as f32, v as f32);
+    }
+    let Some(exact) = ExactHit::of(ray, corners) else { return (t.unwrap_or(0.0), 0.0, 0.0) };
+    let (u, v) = weights.map_or_else(|| (exact.weight(1), exact.weight(2)), |[_, u, v]| (u as f32, v as f32));
+    (t.unwrap_or_else(|| exact.t()), u, v)
+}
+
+/// Weights of the three corners where the line of `ray` meets the triangle, in f64.
+///
+/// Each is in [0, 1] and within 2^-41 of the true one; they sum to 1 up to rounding. Meaningful for a ray that hits the triangle; for
+/// one that does not, (1, 0, 0).
+pub fn hit_weights(ray: &GzRay, corners: &[GzCoord; 3]) -> [f64; 3] {
+    proved_weights(ray, corners)
+        .or_else(|| ExactHit::of(ray, corners).map(|exact| exact.weights_near()))
+        .unwrap_or([1.0, 0.0, 0.0])
+}
+
+/// The weights U/D, V/D, W/D when f64 gives each to within 2^-41, cut to [0, 1].
+fn proved_weights(ray: &GzRay, corners: &[GzCoord; 3]) -> Option<[f64; 3]> {
+    let [u, v, w] = volumes(ray, corners);
+    let sum = u.value + v.value + w.value;
+    // Three errors and two roundings of the sum.
+    let sum_error = u.error + v.error + w.error + 3.0 * U * (u.value.abs() + v.value.abs() + w.value.abs());
+    // |V/D - v/d| <= (error of V + |v/d| error of D) / (|d| - error of D), and |v/d| <= 1 + what it is off by.
+    let worst = u.error.max(v.error).max(w.error) + 2.0 * sum_error;
+    const PROVED: f64 = 1.0 / (1u64 << 42) as f64;
+    (worst <= PROVED * sum.abs()).then(|| [u, v, w].map(|x| (x.value / sum).clamp(0.0, 1.0)))
+}

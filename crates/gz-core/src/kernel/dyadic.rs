@@ -1,0 +1,298 @@
+//! Exact arithmetic on binary fractions: integers times a power of two.
+
+use std::cmp::Ordering;
+
+/// Limbs of 64 bits. The largest number that an exact stage forms is a product M1 D2 to compare two T-values:
+/// origins are multiples of 2^-202 below 2^129 and vertices and directions are f32, so a difference has at most 331 bits, M at most
+/// 996, D at most 944 and M1 D2 at most 1940; aligning two of them adds less than one limb each.
+const LIMBS: usize = 34;
+
+/// The exact number `(-1)^negative * limbs * 2^exponent`.
+///
+/// Every finite f64 is one, and sums and products of the sizes that ray and triangle produce fit; see [`LIMBS`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dyadic {
+    negative: bool,
+    exponent: i32,
+    /// Limbs in use; the uppermost is not 0. 0 for the number 0.
+    len: usize,
+    limbs: [u64; LIMBS],
+}
+
+impl Dyadic {
+    pub(crate) const ZERO: Self = Self { negative: false, exponent: 0, len: 0, limbs: [0; LIMBS] };
+
+    /// The value of a finite `x`, exactly.
+    pub(crate) fn new(x: f64) -> Self {
+        debug_assert!(x.is_finite(), "only finite numbers are binary fractions");
+        let bits = x.to_bits();
+        let (fraction, biased) = (bits & ((1 << 52) - 1), ((bits >> 52) & 0x7ff) as i32);
+        let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+        if mantissa == 0 {
+            return Self::ZERO;
+        }
+        // Odd mantissas keep products short: most coordinates have few bits.
+        let zeros = mantissa.trailing_zeros();
+        let mut limbs = [0; LIMBS];
+        limbs[0] = mantissa >> zeros;
+        Self { negative: x < 0.0, exponent: exponent + zeros as i32, len: 1, limbs }
+    }
+
+    /// -1, 0 or 1.
+    pub(crate) fn sign(&self) -> i32 {
+        match (self.len, self.negative) {
+            (0, _) => 0,
+            (_, true) => -1,
+            (_, false) => 1,
+        }
+    }
+
+    pub(crate) fn negated(mut self) -> Self {
+        self.negative = !self.negative;
+        self
+    }
+
+    pub(crate) fn abs(mut self) -> Self {
+        self.negative = false;
+        self
+    }
+
+    pub(crate) fn times(&self, other: &Self) -> Self {
+        if self.len == 0 || other.len == 0 {
+            return Self::ZERO;
+        }
+        debug_assert!(self.len + other.len <= LIMBS, "products of this size do not occur");
+        let mut limbs = [0u64; LIMBS];
+        for (i, &a) in self.limbs[..self.len].iter().enumerate() {
+            let mut carry = 0u128;
+            for (j, &b) in other.limbs[..other.len].iter().enumerate() {
+                let sum = u128::from(a) * u128::from(b) + u128::from(limbs[i + j]) + carry;
+                limbs[i + j] = sum as u64;
+                carry = sum >> 64;
+            }
+            limbs[i + other.len] = carry as u64;
+        }
+        Self {
+            negative: self.negative != other.negative,
+            exponent: self.exponent + other.exponent,
+            len: used(&limbs, self.len + other.len),
+            limbs,
+        }
+    }
+
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        if self.len == 0 {
+            return *other;
+        }
+        if other.len == 0 {
+            return *self;
+        }
+        let exponent = self.exponent.min(other.exponent);
+        let (a, b) = (self.shifted_to(exponent), other.shifted_to(exponent));
+        if a.negative == b.negative {
+            let mut sum = a;
+            let (len, mut carry) = (a.len.max(b.len), false);
+            for i in 0..len {
+                let (x, c1) = a.limbs[i].overflowing_add(b.limbs[i]);
+                let (x, c2) = x.overflowing_add(u64::from(carry));
+                sum.limbs[i] = x;
+                carry = c1 || c2;
+            }
+            sum.len = len;
+            if carry {
+                sum.limbs[len] = 1;
+                sum.len += 1;
+            }
+            return sum;
+        }
+        let (large, small) = match magnitude_order(&a, &b) {
+            Ordering::Equal => return Self::ZERO,
+            Ordering::Greater => (a, b),
+            Ordering::Less => (b, a),
+        };
+        let (mut difference, mut borrow) = (large, false);
+        for i in 0..large.len {
+            let (x, b1) = large.limbs[i].overflowing_sub(small.limbs[i]);
+            let (x, b2) = x.overflowing_sub(u64::from(borrow));
+            difference.limbs[i] = x;
+            borrow = b1 || b2;
+        }
+        difference.len = used(&difference.limbs, large.len);
+        difference
+    }
+
+    pub(crate) fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.negated())
+    }
+
+    /// The order of two numbers.
+    pub(crate) fn order(&self, other: &Self) -> Ordering {
+        self.minus(other).sign().cmp(&0)
+    }
+
+    /// The same number with a lower `exponent`.
+    fn shifted_to(&self, exponent: i32) -> Self {
+        let by = (self.exponent - exponent) as usize;
+        if by == 0 {
+            return *self;
+        }
+        let (whole, bits) = (by / 64, by % 64);
+        debug_assert!(self.len + whole < LIMBS, "sums of this size do not occur");
+        let mut limbs = [0u64; LIMBS];
+        for (i, &x) in self.limbs[..self.len].iter().enumerate() {
+            limbs[i + whole] |= x << bits;
+            if bits != 0 {
+                limbs[i + whole + 1] = x >> (64 - bits);
+            }
+        }
+        Self { exponent, len: used(&limbs, (self.len + whole + 1).min(LIMBS)), limbs, ..*self }
+    }
+
+    /// The uppermost 64 bits as an integer, and the power of two to multiply it with. Cut off, not rounded.
+    fn leading(&self) -> (u64, i32) {
+        let top = self.limbs[self.len - 1];
+        let free = top.leading_zeros();
+        let below = if self.len > 1 && free > 0 { self.limbs[self.len - 2] >> (64 - free) } else { 0 };
+        ((top << free) | below, self.exponent + 64 * (self.len as i32 - 1) - free as i32)
+    }
+}
+
+/// The quotient `m / d` in f64, to a relative error below 2^-50. `d` is not 0. Beyond the range of f64: infinite or 0.
+pub(crate) fn quotient_near(m: &Dyadic, d: &Dyadic) -> f64 {
+    if m.sign() == 0 {
+        return 0.0;
+    }
+    let ((m_top, m_exp), (d_top, d_exp)) = (m.leading(), d.leading());
+    // Both tops are in [2^63, 2^64): cut-off, conversion and division each cost at most 2^-52.
+    let quotient = libm::ldexp(m_top as f64 / d_top as f64, m_exp - d_exp);
+    if m.negative == d.negative { quotient } else { -quotient }
+}
+
+/// The quotient `m / d` rounded once to f32: to nearest, ties to even, infinite on overflow. `d` is not 0.
+pub(crate) fn quotient_f32(m: &Dyadic, d: &Dyadic) -> f32 {
+    if m.sign() == 0 {
+        return 0.0;
+    }
+    let (abs_m, abs_d) = (m.abs(), d.abs());
+    let mut nearest = quotient_near(&abs_m, &abs_d) as f32;
+    // The guess is at most one step away; each pass of a loop compares exactly with the boundary to the next number.
+    while nearest != f32::INFINITY && beyond(&abs_m, &abs_d, nearest, nearest.next_up()) {
+        nearest = nearest.next_up();
+    }
+    while nearest != 0.0 && !beyond(&abs_m, &abs_d, nearest.next_down(), nearest) {
+        nearest = nearest.next_down();
+    }
+    if m.negative == d.negative { nearest } else { -nearest }
+}
+
+/// Whether `m / d` rounds to `upper` rather than to `lower`, two neighbouring f32 numbers, `m` and `d` positive.
+fn beyond(m: &Dyadic, d: &Dyadic, lower: f32, upper: f32) -> bool {
+    // Halfway to infinity counts as halfway to 2^128. Both ends have 24 bits, so their mean is exact in f64.
+    let upper_value = if upper == f32::INFINITY { 2.0 * f64::from(2f32.powi(127)) } else { f64::from(upper) };
+    let boundary = Dyadic::new((f64::from(lower) + upper_value) / 2.0);
+    match m.order(&boundary.times(d)) {
+        Ordering::Less => false,
+        Ordering::Greater => true,
+        Ordering::Equal => upper.to_bits() & 1 == 0,
+    }
+}
+
+/// Limbs in use among the first `len`.
+fn used(limbs: &[u64; LIMBS], mut len: usize) -> usize {
+    while len > 0 && limbs[len - 1] == 0 {
+        len -= 1;
+    }
+    len
+}
+
+/// The order of magnitudes of two numbers with equal exponents.
+fn magnitude_order(a: &Dyadic, b: &Dyadic) -> Ordering {
+    a.len.cmp(&b.len).then_with(|| a.limbs[..a.len].iter().rev().cmp(b.limbs[..b.len].iter().rev()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn d(x: f64) -> Dyadic {
+        Dyadic::new(x)
+    }
+
+    /// A small generator, so that the figures below are the same on every run.
+    struct Lcg(u64);
+
+    impl Lcg {
+        fn next(&mut self) -> u64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            self.0 >> 11
+        }
+
+        fn integer(&mut self, bits: u32) -> i64 {
+            (self.next() as i64 & ((1 << bits) - 1)) - (1 << (bits - 1))
+        }
+    }
+
+    #[test]
+    fn sums_and_products_equal_those_of_integers() {
+        let mut lcg = Lcg(1);
+        for _ in 0..20_000 {
+            let [a, b, c] = [50, 50, 25].map(|bits| lcg.integer(bits));
+            let shift = (lcg.next() % 20) as i32;
+            // (a 2^shift + b) c against the same in i128.
+            let ours = d(a as f64 * 2f64.powi(shift)).plus(&d(b as f64)).times(&d(c as f64));
+            let theirs = ((i128::from(a) << shift) + i128::from(b)) * i128::from(c);
+            let (high, low) = (theirs >> 50, theirs & ((1 << 50) - 1));
+            let theirs_exact = d(high as f64).times(&d(2f64.powi(50))).plus(&d(low as f64));
+            assert_eq!(ours.order(&theirs_exact), Ordering::Equal, "{a} {b} {c} {shift}");
+            assert_eq!(ours.sign(), theirs.signum() as i32);
+        }
+    }
+
+    #[test]
+    fn the_widest_sum_keeps_its_last_bit() {
+        let (large, small) = (d(2f64.powi(129)), d(2f64.powi(-202)));
+        let sum = large.plus(&small);
+        assert_eq!(sum.minus(&large).order(&small), Ordering::Equal);
+        // And the widest product M1 D2.
+        let cube = sum.times(&sum).times(&sum);
+        let six = cube.times(&cube);
+        assert_eq!(six.minus(&six).sign(), 0);
+        assert_eq!(six.order(&six.plus(&d(2f64.powi(-1000)))), Ordering::Less);
+    }
+
+    #[test]
+    fn quotients_round_like_f64_division_where_that_is_exact_enough() {
+        let mut lcg = Lcg(2);
+        for _ in 0..20_000 {
+            let (m, q) = (lcg.integer(24), lcg.integer(24));
+            if q == 0 {
+                continue;
+            }
+            // A quotient of two 24-bit integers is never within 2^-49 of a rounding boundary unless it is on one, so rounding
+            // twice is rounding once.
+            assert_eq!(quotient_f32(&d(m as f64), &d(q as f64)), (m as f64 / q as f64) as f32, "{m} / {q}");
+        }
+    }
+
+    #[test]
+    fn quotients_round_to_nearest_even_at_every_kind_of_boundary() {
+        let ulp = f64::from(f32::EPSILON);
+        let tiny = d(2f64.powi(-300));
+        let half_way = d(1.0 + ulp / 2.0);
+        assert_eq!(quotient_f32(&half_way, &d(1.0)), 1.0);
+        assert_eq!(quotient_f32(&half_way.plus(&tiny), &d(1.0)), 1.0f32.next_up());
+        assert_eq!(quotient_f32(&d(1.0 + 1.5 * ulp), &d(1.0)), 1.0f32.next_up().next_up());
+        assert_eq!(quotient_f32(&d(1.0 + 1.5 * ulp).minus(&tiny), &d(1.0)), 1.0f32.next_up());
+        assert_eq!(quotient_f32(&half_way.plus(&tiny).negated(), &d(1.0)), -1.0f32.next_up());
+        let top = 2.0 * f64::from(2f32.powi(127));
+        let overflow = d(top - 2f64.powi(103));
+        assert_eq!(quotient_f32(&overflow, &d(1.0)), f32::INFINITY);
+        assert_eq!(quotient_f32(&overflow.minus(&tiny), &d(1.0)), f32::MAX);
+        assert_eq!(quotient_f32(&d(2f64.powi(200)), &d(2f64.powi(-200))), f32::INFINITY);
+        assert_eq!(quotient_f32(&d(2f64.powi(-150)), &d(1.0)), 0.0);
+        assert_eq!(quotient_f32(&d(2f64.powi(-150)).plus(&tiny), &d(1.0)), f32::from_bits(1));
+        assert_eq!(quotient_f32(&d(2f64.powi(-600)), &d(2f64.powi(600))), 0.0);
+        assert_eq!(quotient_near(&d(0.0), &d(-3.0)), 0.0);
+        assert!((quotient_near(&d(-1.0), &d(3.0)) + 1.0 / 3.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,131 @@
+//! Eight triangles side by side, for the leaves of a tree.
+
+use super::filter::{E, FLOOR, FilterRay, longest_edge};
+use crate::simd::Lanes;
+use crate::{GzCoord, NO_TRI, TriId};
+
+/// Up to eight triangles, coordinate by coordinate, 352 bytes.
+///
+/// Unused lanes repeat the first triangle and have the number [`NO_TRI`].
+#[derive(Clone, Debug, PartialEq)]
+#[repr(C, align(32))]
+pub struct TriGroup {
+    /// `v[3 * corner + axis][lane]`.
+    v: [[f32; 8]; 9],
+    /// The longest edge of each triangle in max norm, rounded up.
+    longest: [f32; 8],
+    ids: [TriId; 8],
+}
+
+impl TriGroup {
+    /// Groups the triangles `ids`, 1 to 8 of them, of `positions`; more are left out.
+    ///
+    /// # Panics
+    ///
+    /// If `ids` is empty or names a triangle that does not exist.
+    pub fn new(ids: &[TriId], positions: &[[GzCoord; 3]]) -> Self {
+        let corners = |lane: usize| &positions[ids[if lane < ids.len() { lane } else { 0 }] as usize];
+        Self {
+            v: std::array::from_fn(|k| std::array::from_fn(|lane| corners(lane)[k / 3].to_array()[k % 3])),
+            longest: std::array::from_fn(|lane| longest_edge(corners(lane))),
+            ids: std::array::from_fn(|lane| ids.get(lane).copied().unwrap_or(NO_TRI)),
+        }
+    }
+
+    /// The triangle of a lane, [`NO_TRI`] for an unused one.
+    pub fn id(&self, lane: usize) -> TriId {
+        self.ids[lane]
+    }
+
+    /// The triangles held.
+    pub fn ids(&self) -> impl Iterator<Item = TriId> + '_ {
+        self.ids.iter().copied().filter(|&id| id != NO_TRI)
+    }
+
+    /// Bit `i` is set unless the line of `ray` surely misses the triangle of lane `i`. Bits of unused lanes mean nothing.
+    ///
+    /// The bound is derived in `filter.rs`.
+    #[inline(always)]
+    pub fn survivors<L: Lanes>(&self, ray: &FilterRay) -> u32 {
+        let [kx, ky, kz] = ray.axes;
+        let [ox, oy, oz] = ray.origin.map(L::splat);
+        let [sx, sy] = ray.slope.map(L::splat);
+        let sheared = |corner: usize| {
+            let at = |k: usize| L::load(&self.v[3 * corner + k]);
+            let z = at(kz).minus(oz);
+            // x - S z, as -(S z - x).
+            (sx.mul_sub(z, at(kx).minus(ox)), sy.mul_sub(z, at(ky).minus(oy)))
+        };
+        // Both coordinates change sign, so products keep theirs.
+        let ((x0, y0), (x1, y1), (x2, y2)) = (sheared(0), sheared(1), sheared(2));
+        let u = x2.mul_sub(y1, y2.times(x1));
+        let v = x0.mul_sub(y2, y0.times(x2));
+        let w = x1.mul_sub(y0, y1.times(x0));
+        let delta = L::splat(ray.delta);
+        let longest = L::load(&self.longest);
+        let m = longest.plus(longest).plus(delta);
+        let bound = m.mul_add(m.mul_add(L::splat(12.0 * E), L::splat(4.5 * ray.delta)), L::splat(FLOOR));
+        let (least, most) = (u.min(v).min(w), u.max(v).max(w));
+        let below = least.plus(bound).below(L::splat(0.0));
+        let above = bound.below(most);
+        !(below & above)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::is_hit;
+    use crate::simd::{SimdLevel, Task, dispatch};
+    use crate::{Bounds, GzRay};
+
+    struct Ask<'a>(&'a TriGroup, &'a FilterRay);
+
+    impl Task for Ask<'_> {
+        type Output = u32;
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> u32 {
+            self.0.survivors::<L>(self.1)
+        }
+    }
+
+    #[test]
+    fn no_triangle_that_is_hit_is_filtered_out_and_most_others_are() {
+        let mut state = 9u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / (1u64 << 24) as f32
+        };
+        let (mut hits, mut kept, mut asked) = (0, 0, 0);
+        for round in 0..4000 {
+            let offset = [0.0, 1.0, 30.0, 1e3][round % 4];
+            let size = [1.0, 1e-2, 1e-4][round % 3];
+            let mut point = |s: f32| GzCoord::new(unit(), unit(), unit()) * s + offset;
+            let positions: Vec<[GzCoord; 3]> = (0..8)
+                .map(|_| {
+                    let p = point(1.0);
+                    [p, p + (point(size) - offset), p + (point(size) - offset)]
+                })
+                .collect();
+            let group = TriGroup::new(&[0, 1, 2, 3, 4, 5, 6, 7], &positions);
+            let target = positions[round % 8];
+            // At a corner, at the middle of an edge, inside.
+            let at = [target[0], (target[0] + target[1]) * 0.5, (target[0] + target[1] + target[2]) / 3.0][round % 3];
+            let origin = point(1.0) - GzCoord::Z * 2.0;
+            let ray = GzRay::new(origin, at - origin);
+            let filter = FilterRay::new(&ray, Bounds::of(positions.iter().flatten().copied()).reach()).unwrap();
+            for &level in SimdLevel::available() {
+                let mask = dispatch(level, Ask(&group, &filter));
+                for (lane, corners) in positions.iter().enumerate() {
+                    let hit = is_hit(&ray, corners);
+                    assert!(!hit || mask & (1 << lane) != 0, "{level:?} lane {lane} {ray:?} {corners:?}");
+                    hits += u32::from(hit);
+                    kept += mask >> lane & 1;
+                    asked += 1;
+                }
+            }
+        }
+        assert!(hits > 2000 && kept < asked / 2, "{hits} hits, {kept} kept of {asked}");
+    }
+}
