@@ -143,8 +143,7 @@ impl GzRender {
             GzAttribute::DiffuseCoefficient(kd) => self.current.kd = kd,
             GzAttribute::SpecularCoefficient(ks) => self.current.ks = ks,
             GzAttribute::DistributionCoefficient(power) => {
-                // False for NaN.
-                if !(power >= 0.0) {
+                if power < 0.0 || power.is_nan() {
                     return Err(HomeworkError::Power);
                 }
                 self.current.power = power;

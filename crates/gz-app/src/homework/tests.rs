@@ -1,4 +1,5 @@
 //! The homework's calls, and that they make the pictures that scene files make.
+#![allow(clippy::approx_constant, reason = "the course's directions have four digits")]
 
 use super::*;
 use gz_core::StackError;
