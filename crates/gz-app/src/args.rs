@@ -1,20 +1,13 @@
 //! The values of command-line options, from text.
 
+use crate::accel::{AccelKind, Split};
 use crate::progress::ProgressMode;
 use crate::view::View;
 use gz_core::{CameraModel, Kernel, Tile};
 use gz_shade::{Antialias, Fresnel};
 
-/// What answers rays.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Accel {
-    /// Every ray against every triangle.
-    Brute,
-    /// Through the BSP tree.
-    Bsp,
-}
-
-const ACCELS: [(&str, Accel); 2] = [("brute", Accel::Brute), ("bsp", Accel::Bsp)];
+const ACCELS: [(&str, AccelKind); 2] = [("brute", AccelKind::Brute), ("bsp", AccelKind::Bsp)];
+const SPLITS: [(&str, Split); 2] = [("midpoint", Split::Midpoint), ("sah", Split::Sah)];
 const CAMERAS: [(&str, CameraModel); 4] = [
     ("homework", CameraModel::Homework),
     ("paper", CameraModel::Paper),
@@ -39,8 +32,13 @@ fn name_of<T: PartialEq>(value: T, known: &[(&'static str, T)]) -> &'static str 
 }
 
 /// `brute` or `bsp`.
-pub(crate) fn accel(text: &str) -> Result<Accel, String> {
+pub(crate) fn accel(text: &str) -> Result<AccelKind, String> {
     named(text, &ACCELS)
+}
+
+/// `midpoint` or `sah`.
+pub(crate) fn split(text: &str) -> Result<Split, String> {
+    named(text, &SPLITS)
 }
 
 /// A camera model by name.

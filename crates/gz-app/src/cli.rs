@@ -1,5 +1,6 @@
 //! The command line of `gz`: its options, and how it ends.
 
+use crate::accel::{AccelKind, Split};
 use crate::args;
 use crate::error::AppError;
 use crate::progress::{ProgressMode, say};
@@ -56,15 +57,32 @@ pub struct SceneArgs {
     /// Samples a pixel: none, hw6 (the course's six) or a number
     #[arg(long, value_name = "none|hw6|N", value_parser = args::antialias)]
     pub aa: Option<Antialias>,
-    /// Ray-triangle test: certified (exact) or plane (the paper's, for comparison)
-    #[arg(long, value_name = "NAME", value_parser = args::kernel, default_value = "certified")]
-    pub kernel: Kernel,
-    /// What answers rays: brute (every triangle) or bsp (the tree)
-    #[arg(long, value_name = "HOW", value_parser = args::accel, default_value = "brute")]
-    pub accel: args::Accel,
+    /// What answers rays.
+    #[command(flatten)]
+    pub accel: AccelArgs,
     /// Threads, 0 for all cores
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
+}
+
+/// What answers rays.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct AccelArgs {
+    /// Ray-triangle test: certified (exact) or plane (the paper's, for comparison, by brute force)
+    #[arg(long, value_name = "NAME", value_parser = args::kernel, default_value = "certified")]
+    pub kernel: Kernel,
+    /// What answers rays: bsp (the tree, the default) or brute (every triangle)
+    #[arg(long, value_name = "HOW", value_parser = args::accel)]
+    pub accel: Option<AccelKind>,
+    /// Where the tree is cut: sah (by expected cost, the default) or midpoint (the paper's)
+    #[arg(long, value_name = "RULE", value_parser = args::split)]
+    pub split: Option<Split>,
+    /// The paper's MAX_DEPTH, 0 to 64, for --split midpoint
+    #[arg(long, value_name = "N")]
+    pub max_depth: Option<u32>,
+    /// The paper's MIN_SIZE, for --split midpoint
+    #[arg(long, value_name = "N")]
+    pub min_size: Option<usize>,
 }
 
 /// `gz render`.
@@ -137,7 +155,7 @@ pub struct PixelArgs {
     pub y: u32,
     /// Ask this as well (brute: every triangle, exactly) and fail when the answers differ
     #[arg(long, value_name = "HOW", value_parser = args::accel)]
-    pub compare: Option<args::Accel>,
+    pub compare: Option<AccelKind>,
 }
 
 /// Runs `gz` with these arguments, the program's name first. Returns the exit code, having said on standard error why it is not 0.
@@ -205,7 +223,7 @@ mod tests {
         };
         assert_eq!((args.scene.size, args.scene.camera), (Some((320, 200)), Some(CameraModel::Paper)));
         assert_eq!((args.scene.depth, args.scene.fresnel), (Some(4), Some(Fresnel::Schlick)));
-        assert_eq!((args.scene.kernel, args.scene.aa), (Kernel::Plane, Some(Antialias::Samples(16))));
+        assert_eq!((args.scene.accel.kernel, args.scene.aa), (Kernel::Plane, Some(Antialias::Samples(16))));
         assert_eq!((args.crop, args.tile), (Some(Tile { x0: 1, y0: 2, x1: 30, y1: 40 }), 8));
         assert_eq!((args.progress, args.view, args.explain), (ProgressMode::Json, Some(View::Id), true));
     }

@@ -1,5 +1,6 @@
 //! `gz info`: what a scene holds and needs.
 
+use crate::accel::Accel;
 use crate::args;
 use crate::cli::SceneArgs;
 use crate::error::AppError;
@@ -15,12 +16,17 @@ use std::fmt::Write;
 ///
 /// If the scene cannot be used.
 pub fn report(args: &SceneArgs) -> Result<String, AppError> {
-    job::refuse_missing_tree(args.accel)?;
+    let accel = Accel::of(&args.accel)?;
     threads::with(args.threads, || {
         let draft = load::scene(&args.scene, &job::overrides(args))?;
         draft.warnings.iter().for_each(|warning| say(&format!("gz: warning: {warning}")));
         let (needs, dropped) = (SceneNeeds::of(&draft.scene), draft.dropped);
-        Ok(describe(&args.scene.display().to_string(), &draft.place(needs)?, dropped))
+        let scene = draft.place(needs)?;
+        let built = accel.build(&scene.tris)?;
+        let mut text = describe(&args.scene.display().to_string(), &scene, dropped);
+        let per_triangle = built.bytes() as f64 / scene.tris.len().max(1) as f64;
+        let _ = writeln!(text, "tree       {}, {per_triangle:.1} a triangle", built.describe());
+        Ok(text)
     })
 }
 

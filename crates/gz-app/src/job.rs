@@ -1,6 +1,6 @@
 //! A render as asked for: options checked as far as they can be without the scene.
 
-use crate::args::Accel;
+use crate::accel::Accel;
 use crate::cli::{RenderArgs, SceneArgs};
 use crate::error::AppError;
 use crate::load::Overrides;
@@ -8,7 +8,7 @@ use crate::new_file::NewFile;
 use crate::output::ImageFormat;
 use crate::progress::ProgressMode;
 use crate::view::View;
-use gz_core::{Kernel, Tile};
+use gz_core::Tile;
 use gz_shade::{Antialias, Scene};
 use std::path::{Path, PathBuf};
 
@@ -26,8 +26,8 @@ pub struct RenderJob {
     pub output: NewFile,
     /// Its format.
     pub format: ImageFormat,
-    /// The ray-triangle test.
-    pub kernel: Kernel,
+    /// What answers rays.
+    pub accel: Accel,
     /// Threads; 0 for all cores.
     pub threads: usize,
     /// Edge length of a tile.
@@ -53,7 +53,7 @@ impl RenderJob {
     ///
     /// [`AppError::Usage`] for options that contradict each other, [`AppError::Io`] for a file that cannot be written.
     pub fn of(args: &RenderArgs) -> Result<Self, AppError> {
-        refuse_missing_tree(args.scene.accel)?;
+        let accel = Accel::of(&args.scene.accel)?;
         let scene = args.scene.scene.clone();
         let output = match &args.output {
             Some(path) => path.clone(),
@@ -82,7 +82,7 @@ impl RenderJob {
             tbuffer: args.tbuffer.as_deref().map(&mut new_file).transpose()?,
             overrides: overrides(&args.scene),
             scene,
-            kernel: args.scene.kernel,
+            accel,
             threads: args.scene.threads,
             tile: args.tile,
             crop: args.crop,
@@ -125,18 +125,6 @@ pub fn overrides(args: &SceneArgs) -> Overrides {
     Overrides { size: args.size, camera: args.camera, depth: args.depth, aa: args.aa, fresnel: args.fresnel }
 }
 
-/// Says that the tree is not there, where it is asked for.
-///
-/// # Errors
-///
-/// [`AppError::Usage`] for [`Accel::Bsp`].
-pub fn refuse_missing_tree(accel: Accel) -> Result<(), AppError> {
-    match accel {
-        Accel::Brute => Ok(()),
-        Accel::Bsp => Err(AppError::Usage("--accel bsp: there is no tree in this version yet, use --accel brute".to_owned())),
-    }
-}
-
 /// The scene's name with `.png`, in the current folder.
 fn default_output(scene: &Path) -> PathBuf {
     let mut name = scene.file_stem().unwrap_or("picture".as_ref()).to_owned();
@@ -156,11 +144,5 @@ mod tests {
     fn the_default_picture_is_named_after_the_scene() {
         assert_eq!(default_output(Path::new("assets/scenes/teapot.toml")), Path::new("teapot.png"));
         assert_eq!(default_output(Path::new("a.b.obj")), Path::new("a.b.png"));
-    }
-
-    #[test]
-    fn the_missing_tree_is_refused_as_usage() {
-        assert!(refuse_missing_tree(Accel::Brute).is_ok());
-        assert_eq!(refuse_missing_tree(Accel::Bsp).unwrap_err().exit_code(), 2);
     }
 }

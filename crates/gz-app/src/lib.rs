@@ -1,6 +1,7 @@
 //! Scenes in, pictures out: the parts behind the command `gz`.
 #![forbid(unsafe_code)]
 
+pub mod accel;
 pub mod args;
 pub mod cli;
 pub mod compare;
@@ -8,6 +9,7 @@ pub mod display;
 pub mod error;
 pub mod explain;
 pub mod hits_file;
+pub mod homework;
 pub mod info;
 pub mod job;
 pub mod load;

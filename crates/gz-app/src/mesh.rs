@@ -7,7 +7,7 @@ use gz_core::{GzCoord, GzTextureIndex};
 pub struct Mesh {
     /// Vertex positions, finite.
     pub positions: Vec<GzCoord>,
-    /// Unit normals.
+    /// Normals. Those that triangles use are finite and not zero: unit length, but from an `.asc` file of the length that it gives.
     pub normals: Vec<GzCoord>,
     /// Texture coordinates.
     pub uvs: Vec<GzTextureIndex>,

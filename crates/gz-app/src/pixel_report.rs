@@ -1,12 +1,12 @@
 //! `gz pixel`: one pixel explained.
 
-use crate::args::Accel;
-use crate::cli::PixelArgs;
+use crate::accel::Accel;
+use crate::cli::{AccelArgs, PixelArgs};
 use crate::error::AppError;
 use crate::progress::say;
 use crate::{args, job, load, output, stats, threads};
 use gz_core::glam::DVec2;
-use gz_core::{BruteForce, GzRay, Hit, RayQuery, Tile, TileGrid, TriBuffer};
+use gz_core::{BruteForce, GzRay, Hit, Kernel, RayQuery, Tile, TileGrid, TriBuffer};
 use gz_shade::{ExplainNode, RayKind, Scene, SceneNeeds, explain_pixel, shade_frame};
 use std::fmt::Write;
 
@@ -28,8 +28,8 @@ pub struct Explained {
 ///
 /// If the scene cannot be used or has no such pixel. A difference under `--compare` is no error here: see [`Explained::verdict`].
 pub fn explain(args: &PixelArgs) -> Result<Explained, AppError> {
-    job::refuse_missing_tree(args.scene.accel)?;
-    job::refuse_missing_tree(args.compare.unwrap_or(Accel::Brute))?;
+    let accel = Accel::of(&args.scene.accel)?;
+    let other = args.compare.map(|kind| Accel::of(&AccelArgs { accel: Some(kind), ..NO_CHOICE })).transpose()?;
     threads::with(args.scene.threads, || {
         let draft = load::scene(&args.scene.scene, &job::overrides(&args.scene))?;
         draft.warnings.iter().for_each(|warning| say(&format!("gz: warning: {warning}")));
@@ -39,10 +39,10 @@ pub fn explain(args: &PixelArgs) -> Result<Explained, AppError> {
         }
         let needs = SceneNeeds::of(&draft.scene);
         let scene = draft.place(needs)?;
-        let query = BruteForce::with_kernel(&scene.tris, args.scene.kernel);
-        let report = describe(&scene, needs, &query, args);
-        let verdict = match args.compare {
-            Some(_) => agree(&scene, &query, args),
+        let built = accel.build(&scene.tris)?;
+        let report = describe(&scene, needs, built.query(), args);
+        let verdict = match other {
+            Some(other) => agree(&scene, other.build(&scene.tris)?.query(), built.query(), args),
             None => Ok(()),
         };
         Ok(Explained { report, verdict })
@@ -130,14 +130,17 @@ fn all_hits(tris: &TriBuffer, ray: &GzRay) -> Vec<Hit> {
     hits
 }
 
-/// Whether `query` answers as exact brute force does.
-fn agree(scene: &Scene, query: &dyn RayQuery, args: &PixelArgs) -> Result<(), AppError> {
+/// The options of nobody who has not said anything.
+const NO_CHOICE: AccelArgs = AccelArgs { kernel: Kernel::Certified, accel: None, split: None, max_depth: None, min_size: None };
+
+/// Whether `query` answers as `other` does.
+fn agree(scene: &Scene, other: &dyn RayQuery, query: &dyn RayQuery, args: &PixelArgs) -> Result<(), AppError> {
     let ray = scene.camera.ray(args.x, args.y, DVec2::ZERO);
-    let (expected, actual) = (BruteForce::new(&scene.tris).closest_hit(&ray), query.closest_hit(&ray));
+    let (expected, actual) = (other.closest_hit(&ray), query.closest_hit(&ray));
     let text = |hit: &Hit| if hit.is_hit() { hit_line(scene, hit) } else { "nothing".to_owned() };
     match expected == actual {
         true => Ok(()),
-        false => Err(AppError::Differs(format!("brute force hits {}, this query hits {}", text(&expected), text(&actual)))),
+        false => Err(AppError::Differs(format!("the one hits {}, the other {}", text(&expected), text(&actual)))),
     }
 }
 

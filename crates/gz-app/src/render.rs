@@ -6,7 +6,7 @@ use crate::progress::Progress;
 use crate::stats::{Clock, RenderStats};
 use crate::view::trace_hits;
 use crate::{explain, hits_file, load, output, threads};
-use gz_core::{BruteForce, TileGrid};
+use gz_core::TileGrid;
 use gz_shade::{SceneNeeds, shade_frame};
 
 /// Does a render job: writes its picture and whatever else was asked for. Returns what `--explain` prints, else nothing.
@@ -35,18 +35,19 @@ fn frame(job: &RenderJob) -> Result<String, AppError> {
     clock.lap("place");
 
     // Triangle buffer -> what answers rays.
-    let query = BruteForce::with_kernel(&scene.tris, job.kernel);
+    let built = job.accel.build(&scene.tris)?;
+    let query = built.query();
     clock.lap("build");
 
     // Primary rays -> T-values, where they are asked for by themselves.
     let grid = TileGrid::of(area, job.tile);
-    let hits = (job.tbuffer.is_some() || job.view.is_some()).then(|| trace_hits(&scene, &query, &grid));
+    let hits = (job.tbuffer.is_some() || job.view.is_some()).then(|| trace_hits(&scene, query, &grid));
 
     // Tile by tile: T-values -> shadow, mirror and glass rays -> colours.
     progress.begin(area.len() as u64);
     let frame = match (job.view, &hits) {
         (Some(view), Some(hits)) => view.frame(&scene, hits, &grid),
-        _ => shade_frame(&scene, needs, &query, &grid, &|tile| progress.advance(tile)),
+        _ => shade_frame(&scene, needs, query, &grid, &|tile| progress.advance(tile)),
     };
     clock.lap("trace");
 

@@ -105,8 +105,8 @@ impl RenderStats<'_> {
             "seconds": self.clock.json(),
             "settings": {
                 "camera": args::camera_name(scene.camera.model()),
-                "accel": "brute",
-                "kernel": args::kernel_name(job.kernel),
+                "accel": job.accel.name(),
+                "kernel": args::kernel_name(job.accel.kernel()),
                 "depth": scene.rules.depth,
                 "fresnel": args::fresnel_name(scene.rules.fresnel),
                 "aa": args::antialias_name(scene.rules.antialias),

@@ -4,7 +4,6 @@
 //! [`gz_shade::SceneNeeds::of`] looks at the draft and decides what placing has to store.
 
 pub mod asc;
-pub mod normals;
 pub mod obj;
 pub mod picture;
 
@@ -16,9 +15,12 @@ mod keys;
 mod lights;
 #[cfg(test)]
 mod meaning_tests;
+mod mtl;
+mod normals;
 mod own_material;
 mod part;
 mod place;
+mod polygon;
 #[cfg(test)]
 mod reference_tests;
 mod scene_file;
@@ -28,6 +30,9 @@ mod settings;
 mod source;
 mod spot;
 mod surfaces;
+#[cfg(test)]
+mod testing;
+mod text;
 mod values;
 mod words;
 
