@@ -28,7 +28,11 @@ pub fn needs_report(scene: &Scene) -> String {
             "glass" => 1,
             _ => 0,
         };
-        let cost = if bytes > 0 { format!("; {bytes} bytes a triangle") } else { String::new() };
+        let cost = match bytes {
+            0 => String::new(),
+            1 => "; 1 byte a triangle".to_owned(),
+            bytes => format!("; {bytes} bytes a triangle"),
+        };
         let _ = writeln!(text, "  {:<20} yes: {because}{cost}", reason.need);
     }
     text

@@ -2,7 +2,7 @@
 
 use gz_core::Tile;
 use std::io::{IsTerminal, Write};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// How progress is shown.
@@ -25,14 +25,15 @@ pub struct Progress {
     mode: ProgressMode,
     started: Instant,
     total: u64,
-    done: AtomicU64,
+    /// Pixels done. Locked while a line is written, so that lines never go backwards.
+    done: Mutex<u64>,
     bar: Option<indicatif::ProgressBar>,
 }
 
 impl Progress {
     /// Nothing done yet; the pixels to come are not known before [`Self::begin`].
     pub fn new(mode: ProgressMode) -> Self {
-        Self { mode, started: Instant::now(), total: 0, done: AtomicU64::new(0), bar: None }
+        Self { mode, started: Instant::now(), total: 0, done: Mutex::new(0), bar: None }
     }
 
     /// From here on, `total` pixels are worked on.
@@ -54,17 +55,20 @@ impl Progress {
         if let Some(bar) = &self.bar {
             bar.inc(pixels);
         }
-        let before = self.done.fetch_add(pixels, Ordering::Relaxed);
         let parts = match self.mode {
             ProgressMode::Plain => 10,
             ProgressMode::Json => 100,
             ProgressMode::Auto | ProgressMode::None => return,
         };
-        if let Some(part) = step_reached(before, before + pixels, self.total, parts) {
+        // A thread that panicked while it held the lock has left a count that is still good.
+        let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = *done;
+        *done += pixels;
+        if let Some(part) = step_reached(before, *done, self.total, parts) {
             let seconds = self.started.elapsed().as_secs_f64();
             say(&match self.mode {
                 ProgressMode::Json => {
-                    let line = serde_json::json!({ "event": "progress", "percent": part, "pixels": before + pixels, "of": self.total, "seconds": seconds });
+                    let line = serde_json::json!({ "event": "progress", "percent": part, "pixels": *done, "of": self.total, "seconds": seconds });
                     line.to_string()
                 }
                 _ => format!("{:>5}%  {seconds:.1} s", part * 10),

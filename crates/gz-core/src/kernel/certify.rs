@@ -120,33 +120,54 @@ pub(crate) fn t_u_v(ray: &GzRay, corners: &[GzCoord; 3]) -> (f32, f32, f32) {
         Some((lo, hi)) if lo.to_bits() == hi.to_bits() => Some(lo),
         _ => None,
     };
-    let weights = proved_weights(ray, corners);
-    if let (Some(t), Some([_, u, v])) = (t, weights) {
-        return (t, u as f32, v as f32);
+    // A weight is good to 1 ulp of f32 when it errs by less than a quarter of one, and to 2^-40 when by less than 2^-41.
+    let weights = near_weights(ray, corners).and_then(|([_, u, v], error)| {
+        let good = |w: f64| error <= (w * f64::from(f32::EPSILON) / 4.0).max(HALF_SMALLEST);
+        (good(u) && good(v)).then_some((u as f32, v as f32))
+    });
+    if let (Some(t), Some((u, v))) = (t, weights) {
+        return (t, u, v);
     }
     let Some(exact) = ExactHit::of(ray, corners) else { return (t.unwrap_or(0.0), 0.0, 0.0) };
-    let (u, v) = weights.map_or_else(|| (exact.weight(1), exact.weight(2)), |[_, u, v]| (u as f32, v as f32));
+    let (u, v) = weights.unwrap_or_else(|| (exact.weight(1), exact.weight(2)));
     (t.unwrap_or_else(|| exact.t()), u, v)
 }
 
+/// 2^-41.
+const HALF_SMALLEST: f64 = 1.0 / (1u64 << 41) as f64;
+/// 2^-36.
+const WEIGHT_ERROR: f64 = 1.0 / (1u64 << 36) as f64;
+
 /// Weights of the three corners where the line of `ray` meets the triangle, in f64.
 ///
-/// Each is in [0, 1] and within 2^-41 of the true one; they sum to 1 up to rounding. Meaningful for a ray that hits the triangle; for
+/// Each is in [0, 1] and within 2^-36 of the true one; they sum to 1 up to rounding. Meaningful for a ray that hits the triangle; for
 /// one that does not, (1, 0, 0).
 pub fn hit_weights(ray: &GzRay, corners: &[GzCoord; 3]) -> [f64; 3] {
-    proved_weights(ray, corners)
+    near_weights(ray, corners)
+        .filter(|&(_, error)| error <= WEIGHT_ERROR)
+        .map(|(weights, _)| weights)
         .or_else(|| ExactHit::of(ray, corners).map(|exact| exact.weights_near()))
         .unwrap_or([1.0, 0.0, 0.0])
 }
 
-/// The weights U/D, V/D, W/D when f64 gives each to within 2^-41, cut to [0, 1].
-fn proved_weights(ray: &GzRay, corners: &[GzCoord; 3]) -> Option<[f64; 3]> {
-    let [u, v, w] = volumes(ray, corners);
-    let sum = u.value + v.value + w.value;
-    // Three errors and two roundings of the sum.
-    let sum_error = u.error + v.error + w.error + 3.0 * U * (u.value.abs() + v.value.abs() + w.value.abs());
-    // |V/D - v/d| <= (error of V + |v/d| error of D) / (|d| - error of D), and |v/d| <= 1 + what it is off by.
-    let worst = u.error.max(v.error).max(w.error) + 2.0 * sum_error;
-    const PROVED: f64 = 1.0 / (1u64 << 42) as f64;
-    (worst <= PROVED * sum.abs()).then(|| [u, v, w].map(|x| (x.value / sum).clamp(0.0, 1.0)))
+/// The weights by f64, cut to [0, 1], and a bound of how far each may be off; `None` when D is not proved to differ from 0.
+///
+/// Formed from edges: V = d.(e2 x A), W = d.(A x e1), D = d.(e1 x e2) and U = D - V - W, whose permanents are smaller than those of
+/// d.(B x C) by the triangle's size over its distance.
+fn near_weights(ray: &GzRay, corners: &[GzCoord; 3]) -> Option<([f64; 3], f64)> {
+    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    let (e1, e2, d) = (b - a, c - a, ray.direction.as_dvec3());
+    let from_origin = a - ray.origin;
+    let v = volume(d, e2, from_origin, VOLUME_BOUND);
+    let w = volume(d, from_origin, e1, VOLUME_BOUND);
+    let sum = volume(d, e1, e2, VOLUME_BOUND);
+    let magnitude = sum.value.abs();
+    if magnitude <= 4.0 * sum.error {
+        return None;
+    }
+    // |V/D - v/d| <= (error of V + |v/d| error of D) / (|d| - error of D), |V/D| at most 1, the same for W, and U has the errors of both;
+    // the loss of the denominator is at most 4/3, 1.5 leaves room for roundings, and 2u for those of the quotients and of U.
+    let error = 1.5 * (v.error + w.error + 2.0 * sum.error) / magnitude + 4.0 * U;
+    let (v, w) = (v.value / sum.value, w.value / sum.value);
+    Some(([1.0 - v - w, v, w].map(|x| x.clamp(0.0, 1.0)), error))
 }

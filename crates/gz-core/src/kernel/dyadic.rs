@@ -2,25 +2,61 @@
 
 use std::cmp::Ordering;
 
-/// Limbs of 64 bits. The largest number that an exact stage forms is a product M1 D2 to compare two T-values:
+/// Limbs of 64 bits at most. The largest number that an exact stage forms is a product M1 D2 to compare two T-values:
 /// origins are multiples of 2^-202 below 2^129 and vertices and directions are f32, so a difference has at most 331 bits, M at most
 /// 996, D at most 944 and M1 D2 at most 1940; aligning two of them adds less than one limb each.
-const LIMBS: usize = 34;
+const MOST: usize = 34;
+
+/// Limbs kept without allocating: enough for all but extreme ranges.
+const FEW: usize = 9;
 
 /// The exact number `(-1)^negative * limbs * 2^exponent`.
 ///
-/// Every finite f64 is one, and sums and products of the sizes that ray and triangle produce fit; see [`LIMBS`].
-#[derive(Clone, Copy, Debug)]
+/// Every finite f64 is one, and sums and products of the sizes that ray and triangle produce fit; see [`MOST`].
+#[derive(Clone, Debug)]
 pub(crate) struct Dyadic {
     negative: bool,
     exponent: i32,
     /// Limbs in use; the uppermost is not 0. 0 for the number 0.
     len: usize,
-    limbs: [u64; LIMBS],
+    limbs: Limbs,
+}
+
+/// Room for limbs; those above the ones in use are 0.
+#[derive(Clone, Debug)]
+enum Limbs {
+    Few([u64; FEW]),
+    Many(Box<[u64; MOST]>),
+}
+
+impl Limbs {
+    /// Zeros, with room for `len`.
+    fn room_for(len: usize) -> Self {
+        if len <= FEW {
+            Self::Few([0; FEW])
+        } else {
+            debug_assert!(len <= MOST, "numbers of this size do not occur");
+            Self::Many(Box::new([0; MOST]))
+        }
+    }
+
+    fn all(&self) -> &[u64] {
+        match self {
+            Self::Few(limbs) => limbs,
+            Self::Many(limbs) => &limbs[..],
+        }
+    }
+
+    fn all_mut(&mut self) -> &mut [u64] {
+        match self {
+            Self::Few(limbs) => limbs,
+            Self::Many(limbs) => &mut limbs[..],
+        }
+    }
 }
 
 impl Dyadic {
-    pub(crate) const ZERO: Self = Self { negative: false, exponent: 0, len: 0, limbs: [0; LIMBS] };
+    pub(crate) const ZERO: Self = Self { negative: false, exponent: 0, len: 0, limbs: Limbs::Few([0; FEW]) };
 
     /// The value of a finite `x`, exactly.
     pub(crate) fn new(x: f64) -> Self {
@@ -33,9 +69,13 @@ impl Dyadic {
         }
         // Odd mantissas keep products short: most coordinates have few bits.
         let zeros = mantissa.trailing_zeros();
-        let mut limbs = [0; LIMBS];
+        let mut limbs = [0; FEW];
         limbs[0] = mantissa >> zeros;
-        Self { negative: x < 0.0, exponent: exponent + zeros as i32, len: 1, limbs }
+        Self { negative: x < 0.0, exponent: exponent + zeros as i32, len: 1, limbs: Limbs::Few(limbs) }
+    }
+
+    fn limbs(&self) -> &[u64] {
+        &self.limbs.all()[..self.len]
     }
 
     /// -1, 0 or 1.
@@ -58,71 +98,50 @@ impl Dyadic {
     }
 
     pub(crate) fn times(&self, other: &Self) -> Self {
+        let room = self.len + other.len;
         if self.len == 0 || other.len == 0 {
             return Self::ZERO;
         }
-        debug_assert!(self.len + other.len <= LIMBS, "products of this size do not occur");
-        let mut limbs = [0u64; LIMBS];
-        for (i, &a) in self.limbs[..self.len].iter().enumerate() {
+        let mut limbs = Limbs::room_for(room);
+        let out = limbs.all_mut();
+        for (i, &a) in self.limbs().iter().enumerate() {
             let mut carry = 0u128;
-            for (j, &b) in other.limbs[..other.len].iter().enumerate() {
-                let sum = u128::from(a) * u128::from(b) + u128::from(limbs[i + j]) + carry;
-                limbs[i + j] = sum as u64;
+            for (j, &b) in other.limbs().iter().enumerate() {
+                let sum = u128::from(a) * u128::from(b) + u128::from(out[i + j]) + carry;
+                out[i + j] = sum as u64;
                 carry = sum >> 64;
             }
-            limbs[i + other.len] = carry as u64;
+            out[i + other.len] = carry as u64;
         }
-        Self {
-            negative: self.negative != other.negative,
-            exponent: self.exponent + other.exponent,
-            len: used(&limbs, self.len + other.len),
-            limbs,
-        }
+        let len = used(out, room);
+        Self { negative: self.negative != other.negative, exponent: self.exponent + other.exponent, len, limbs }
     }
 
     pub(crate) fn plus(&self, other: &Self) -> Self {
         if self.len == 0 {
-            return *other;
+            return other.clone();
         }
         if other.len == 0 {
-            return *self;
+            return self.clone();
         }
-        let exponent = self.exponent.min(other.exponent);
-        let (a, b) = (self.shifted_to(exponent), other.shifted_to(exponent));
-        if a.negative == b.negative {
-            let mut sum = a;
-            let (len, mut carry) = (a.len.max(b.len), false);
-            for i in 0..len {
-                let (x, c1) = a.limbs[i].overflowing_add(b.limbs[i]);
-                let (x, c2) = x.overflowing_add(u64::from(carry));
-                sum.limbs[i] = x;
-                carry = c1 || c2;
-            }
-            sum.len = len;
-            if carry {
-                sum.limbs[len] = 1;
-                sum.len += 1;
-            }
-            return sum;
+        // The number with the higher exponent is shifted left, with room for a carry, and the other is added or taken away in place.
+        let (high, low) = if self.exponent >= other.exponent { (self, other) } else { (other, self) };
+        let mut sum = high.shifted_to(low.exponent, low.len);
+        let room = sum.limbs.all().len();
+        let out = sum.limbs.all_mut();
+        if high.negative == low.negative {
+            add(out, low.limbs());
+        } else if take_away(out, low.limbs()) {
+            // What was taken away was the larger: the difference came out as its complement.
+            negate(out);
+            sum.negative = low.negative;
         }
-        let (large, small) = match magnitude_order(&a, &b) {
-            Ordering::Equal => return Self::ZERO,
-            Ordering::Greater => (a, b),
-            Ordering::Less => (b, a),
-        };
-        let (mut difference, mut borrow) = (large, false);
-        for i in 0..large.len {
-            let (x, b1) = large.limbs[i].overflowing_sub(small.limbs[i]);
-            let (x, b2) = x.overflowing_sub(u64::from(borrow));
-            difference.limbs[i] = x;
-            borrow = b1 || b2;
-        }
-        difference.len = used(&difference.limbs, large.len);
-        difference
+        sum.len = used(out, room);
+        if sum.len == 0 { Self::ZERO } else { sum }
     }
 
     pub(crate) fn minus(&self, other: &Self) -> Self {
-        self.plus(&other.negated())
+        self.plus(&other.clone().negated())
     }
 
     /// The order of two numbers.
@@ -130,29 +149,29 @@ impl Dyadic {
         self.minus(other).sign().cmp(&0)
     }
 
-    /// The same number with a lower `exponent`.
-    fn shifted_to(&self, exponent: i32) -> Self {
+    /// The same number with a lower `exponent`, and room for at least `other` limbs and a carry.
+    fn shifted_to(&self, exponent: i32, other: usize) -> Self {
         let by = (self.exponent - exponent) as usize;
-        if by == 0 {
-            return *self;
-        }
         let (whole, bits) = (by / 64, by % 64);
-        debug_assert!(self.len + whole < LIMBS, "sums of this size do not occur");
-        let mut limbs = [0u64; LIMBS];
-        for (i, &x) in self.limbs[..self.len].iter().enumerate() {
-            limbs[i + whole] |= x << bits;
+        let room = (self.len + whole + 1).max(other) + 1;
+        let mut limbs = Limbs::room_for(room);
+        let out = limbs.all_mut();
+        for (i, &x) in self.limbs().iter().enumerate() {
+            out[i + whole] |= x << bits;
             if bits != 0 {
-                limbs[i + whole + 1] = x >> (64 - bits);
+                out[i + whole + 1] = x >> (64 - bits);
             }
         }
-        Self { exponent, len: used(&limbs, (self.len + whole + 1).min(LIMBS)), limbs, ..*self }
+        let len = used(out, room);
+        Self { negative: self.negative, exponent, len, limbs }
     }
 
     /// The uppermost 64 bits as an integer, and the power of two to multiply it with. Cut off, not rounded.
     fn leading(&self) -> (u64, i32) {
-        let top = self.limbs[self.len - 1];
+        let limbs = self.limbs();
+        let top = limbs[self.len - 1];
         let free = top.leading_zeros();
-        let below = if self.len > 1 && free > 0 { self.limbs[self.len - 2] >> (64 - free) } else { 0 };
+        let below = if self.len > 1 && free > 0 { limbs[self.len - 2] >> (64 - free) } else { 0 };
         ((top << free) | below, self.exponent + 64 * (self.len as i32 - 1) - free as i32)
     }
 }
@@ -173,7 +192,7 @@ pub(crate) fn quotient_f32(m: &Dyadic, d: &Dyadic) -> f32 {
     if m.sign() == 0 {
         return 0.0;
     }
-    let (abs_m, abs_d) = (m.abs(), d.abs());
+    let (abs_m, abs_d) = (m.clone().abs(), d.clone().abs());
     let mut nearest = quotient_near(&abs_m, &abs_d) as f32;
     // The guess is at most one step away; each pass of a loop compares exactly with the boundary to the next number.
     while nearest != f32::INFINITY && beyond(&abs_m, &abs_d, nearest, nearest.next_up()) {
@@ -198,16 +217,48 @@ fn beyond(m: &Dyadic, d: &Dyadic, lower: f32, upper: f32) -> bool {
 }
 
 /// Limbs in use among the first `len`.
-fn used(limbs: &[u64; LIMBS], mut len: usize) -> usize {
+fn used(limbs: &[u64], mut len: usize) -> usize {
     while len > 0 && limbs[len - 1] == 0 {
         len -= 1;
     }
     len
 }
 
-/// The order of magnitudes of two numbers with equal exponents.
-fn magnitude_order(a: &Dyadic, b: &Dyadic) -> Ordering {
-    a.len.cmp(&b.len).then_with(|| a.limbs[..a.len].iter().rev().cmp(b.limbs[..b.len].iter().rev()))
+/// `a += b`; `a` has room for the carry.
+fn add(a: &mut [u64], b: &[u64]) {
+    let mut carry = false;
+    for (i, x) in a.iter_mut().enumerate() {
+        if i >= b.len() && !carry {
+            break;
+        }
+        let (sum, c1) = x.overflowing_add(b.get(i).copied().unwrap_or(0));
+        let (sum, c2) = sum.overflowing_add(u64::from(carry));
+        *x = sum;
+        carry = c1 || c2;
+    }
+}
+
+/// `a -= b`, modulo the room of `a`; whether `b` was larger.
+fn take_away(a: &mut [u64], b: &[u64]) -> bool {
+    let mut borrow = false;
+    for (i, x) in a.iter_mut().enumerate() {
+        if i >= b.len() && !borrow {
+            break;
+        }
+        let (difference, b1) = x.overflowing_sub(b.get(i).copied().unwrap_or(0));
+        let (difference, b2) = difference.overflowing_sub(u64::from(borrow));
+        *x = difference;
+        borrow = b1 || b2;
+    }
+    borrow
+}
+
+/// `a = -a`, modulo the room of `a`.
+fn negate(a: &mut [u64]) {
+    let mut carry = true;
+    for x in a {
+        (*x, carry) = (!*x).overflowing_add(u64::from(carry));
+    }
 }
 
 #[cfg(test)]

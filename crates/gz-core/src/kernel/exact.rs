@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 type Vec3 = [Dyadic; 3];
 
 /// The exact answer for a ray and a triangle that the line meets: T-value and weights as fractions over one denominator.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct ExactHit {
     /// t = m / d.
     m: Dyadic,
@@ -79,7 +79,7 @@ impl ExactHit {
 
     /// The weights in f64, each to a relative error below 2^-50.
     pub(crate) fn weights_near(&self) -> [f64; 3] {
-        self.weights.map(|w| quotient_near(&w, &self.d))
+        std::array::from_fn(|k| quotient_near(&self.weights[k], &self.d))
     }
 }
 

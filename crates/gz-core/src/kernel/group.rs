@@ -47,17 +47,10 @@ impl TriGroup {
     /// The bound is derived in `filter.rs`.
     #[inline(always)]
     pub fn survivors<L: Lanes>(&self, ray: &FilterRay) -> u32 {
-        let [kx, ky, kz] = ray.axes;
-        let [ox, oy, oz] = ray.origin.map(L::splat);
-        let [sx, sy] = ray.slope.map(L::splat);
-        let sheared = |corner: usize| {
-            let at = |k: usize| L::load(&self.v[3 * corner + k]);
-            let z = at(kz).minus(oz);
-            // x - S z, as -(S z - x).
-            (sx.mul_sub(z, at(kx).minus(ox)), sy.mul_sub(z, at(ky).minus(oy)))
-        };
-        // Both coordinates change sign, so products keep theirs.
-        let ((x0, y0), (x1, y1), (x2, y2)) = (sheared(0), sheared(1), sheared(2));
+        let (x0, y0) = self.sheared::<L>(0, ray);
+        let (x1, y1) = self.sheared::<L>(1, ray);
+        let (x2, y2) = self.sheared::<L>(2, ray);
+        // Both coordinates have the other sign, so products keep theirs.
         let u = x2.mul_sub(y1, y2.times(x1));
         let v = x0.mul_sub(y2, y0.times(x2));
         let w = x1.mul_sub(y0, y1.times(x0));
@@ -69,6 +62,16 @@ impl TriGroup {
         let below = least.plus(bound).below(L::splat(0.0));
         let above = bound.below(most);
         !(below & above)
+    }
+
+    /// S z - x and the same for y, for one corner of each triangle. Not a closure: those are not compiled for the caller's SIMD level.
+    #[inline(always)]
+    fn sheared<L: Lanes>(&self, corner: usize, ray: &FilterRay) -> (L, L) {
+        let [kx, ky, kz] = ray.axes;
+        let x = L::load(&self.v[3 * corner + kx]).minus(L::splat(ray.origin[0]));
+        let y = L::load(&self.v[3 * corner + ky]).minus(L::splat(ray.origin[1]));
+        let z = L::load(&self.v[3 * corner + kz]).minus(L::splat(ray.origin[2]));
+        (L::splat(ray.slope[0]).mul_sub(z, x), L::splat(ray.slope[1]).mul_sub(z, y))
     }
 }
 

@@ -57,11 +57,7 @@ struct Portable([f32; 8]);
 
 #[inline(always)]
 fn each(a: Portable, b: Portable, f: impl Fn(f32, f32) -> f32) -> Portable {
-    let mut out = [0.0; 8];
-    for i in 0..8 {
-        out[i] = f(a.0[i], b.0[i]);
-    }
-    Portable(out)
+    Portable(std::array::from_fn(|i| f(a.0[i], b.0[i])))
 }
 
 #[inline(always)]

@@ -1,0 +1,165 @@
+//! `gz` as a user runs it: files written, figures printed, exit codes.
+
+use crate::folder::Folder;
+use image::RgbImage;
+use serde_json::Value;
+
+fn picture(folder: &Folder, name: &str) -> RgbImage {
+    image::load_from_memory(&folder.read(name)).unwrap_or_else(|error| panic!("{name}: {error}")).to_rgb8()
+}
+
+#[test]
+fn without_a_command_the_help_is_printed() {
+    let folder = Folder::new("help");
+    let ended = folder.done("");
+    assert!(ended.out.contains("Usage: gz") && ended.out.contains("Exit codes:"), "{}", ended.out);
+    assert_eq!(folder.done("--version").out, format!("gz {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn a_render_leaves_its_picture_and_nothing_else() {
+    let folder = Folder::with_scene("plain");
+    let ended = folder.done("render scene.toml --size 40x30");
+    assert_eq!(folder.names(), ["scene.png", "scene.toml"]);
+    assert_eq!(picture(&folder, "scene.png").dimensions(), (40, 30));
+    assert!(ended.err.starts_with("scene.png: 40x30, ") && ended.err.lines().count() == 1, "{}", ended.err);
+    assert!(ended.out.is_empty());
+}
+
+#[test]
+fn threads_and_tiles_do_not_show_and_a_crop_is_that_part() {
+    let folder = Folder::with_scene("threads");
+    folder.done("render scene.toml -o a.ppm --size 70x50 --threads 1 --tile 64");
+    for options in ["--threads 2 --tile 8", "--threads 7 --tile 64", "--threads 7 --tile 1"] {
+        folder.done(&format!("render scene.toml -o b.ppm --size 70x50 {options}"));
+        assert!(folder.read("a.ppm") == folder.read("b.ppm"), "{options}");
+    }
+    folder.done("render scene.toml -o crop.png --size 70x50 --crop 20,10,61,33");
+    let whole = picture(&folder, "a.ppm");
+    let part = image::imageops::crop_imm(&whole, 20, 10, 41, 23).to_image();
+    assert!(picture(&folder, "crop.png") == part);
+    assert!(part.pixels().any(|p| p != part.get_pixel(0, 0)), "the part shows something");
+}
+
+#[test]
+fn all_formats_hold_the_same_picture() {
+    let folder = Folder::with_scene("formats");
+    for name in ["a.png", "a.ppm", "a.pfm"] {
+        folder.done(&format!("render scene.toml -o {name} --size 24x16 --progress none"));
+    }
+    assert_eq!(picture(&folder, "a.png"), picture(&folder, "a.ppm"));
+    let (width, height, colors) = gz_app::pfm::decode(&folder.read("a.pfm")).unwrap();
+    assert_eq!(gz_app::output::rgb8(&colors, gz_shade::ColorCode::Srgb), picture(&folder, "a.png").into_raw());
+    assert_eq!((width, height), (24, 16));
+}
+
+#[test]
+fn a_t_buffer_has_a_hit_for_each_pixel_and_follows_the_crop() {
+    let folder = Folder::with_scene("tbuffer");
+    folder.done("render scene.toml -o a.png --size 32x24 --tbuffer whole.hits");
+    folder.done("render scene.toml -o b.png --size 32x24 --tbuffer part.hits --crop 4,3,30,20 --tile 5");
+    let (whole, part) = (folder.read("whole.hits"), folder.read("part.hits"));
+    assert_eq!((whole.len(), part.len()), (32 * 24 * 16, 26 * 17 * 16));
+    for row in 0..17 {
+        assert!(part[row * 26 * 16..][..26 * 16] == whole[((row + 3) * 32 + 4) * 16..][..26 * 16], "row {row}");
+    }
+    let hits = gz_app::hits_file::decode(&whole).unwrap();
+    assert!(hits.iter().any(|hit| hit.is_hit()) && hits.iter().any(|hit| !hit.is_hit()));
+}
+
+#[test]
+fn views_differ_from_the_picture_and_from_each_other() {
+    let folder = Folder::with_scene("views");
+    folder.done("render scene.toml -o colour.ppm --size 32x24");
+    for view in ["t", "id", "normal"] {
+        folder.done(&format!("render scene.toml -o {view}.ppm --size 32x24 --view {view}"));
+    }
+    let files = ["colour", "t", "id", "normal"].map(|name| folder.read(&format!("{name}.ppm")));
+    for (i, a) in files.iter().enumerate() {
+        assert!(files[..i].iter().all(|b| a != b), "view {i}");
+    }
+}
+
+#[test]
+fn statistics_count_what_was_done() {
+    let folder = Folder::with_scene("stats");
+    folder.done("render scene.toml -o a.png --size 32x24 --crop 0,0,32,12 --stats-json s.json --threads 2 --tile 7");
+    let stats: Value = serde_json::from_slice(&folder.read("s.json")).unwrap();
+    assert_eq!(stats["rays"]["primary"], 32 * 12);
+    assert_eq!(stats["size"], serde_json::json!([32, 24]));
+    assert_eq!(stats["crop"], serde_json::json!([0, 0, 32, 12]));
+    assert_eq!(stats["counters"]["nan_pixels"], 0);
+    assert_eq!((&stats["settings"]["threads"], &stats["settings"]["tile"]), (&Value::from(2), &Value::from(7)));
+    let triangles = stats["triangles"].as_u64().unwrap();
+    assert_eq!(stats["bytes"]["triangles"].as_u64().unwrap(), triangles * stats["bytes"]["per_triangle"].as_u64().unwrap());
+    let seconds = stats["seconds"].as_object().unwrap();
+    let phases: f64 = seconds.iter().filter(|(name, _)| *name != "total").map(|(_, s)| s.as_f64().unwrap()).sum();
+    assert!((phases - seconds["total"].as_f64().unwrap()).abs() < 1e-9);
+}
+
+#[test]
+fn progress_is_plain_or_json_or_silent() {
+    let folder = Folder::with_scene("progress");
+    let plain = folder.done("render scene.toml --size 32x32 --tile 8 --progress plain").err;
+    assert!(plain.lines().next().is_some_and(|line| line.trim_start().starts_with("10%")), "{plain}");
+    assert!(plain.lines().any(|line| line.trim_start().starts_with("100%")), "{plain}");
+    let json = folder.done("render scene.toml --size 32x32 --tile 8 --progress json").err;
+    let events: Vec<Value> = json.lines().map(|line| serde_json::from_str(line).expect("a line of JSON")).collect();
+    assert_eq!(events.last().unwrap()["event"], "done");
+    assert_eq!(events[events.len() - 2]["percent"], 100);
+    assert_eq!(folder.done("render scene.toml --size 32x32 --progress none").err, "");
+    assert_eq!(folder.done("render scene.toml --size 32x32").err.lines().count(), 1);
+}
+
+#[test]
+fn explain_tells_needs_and_rays() {
+    let folder = Folder::with_scene("explain");
+    let out = folder.done("render scene.toml --size 16x16 --explain").out;
+    assert!(out.lines().any(|line| line.trim_start().starts_with("shadows") && line.contains("yes")), "{out}");
+    assert!(out.lines().any(|line| line.trim_start().starts_with("glass") && line.ends_with("no")), "{out}");
+    assert!(out.contains("primary 256, shadow"), "{out}");
+}
+
+#[test]
+fn comparing_ends_with_4_beyond_the_tolerance_and_draws_a_sheet() {
+    let folder = Folder::with_scene("compare");
+    folder.done("render scene.toml -o a.png --size 24x16 --tbuffer a.hits");
+    folder.done("render scene.toml -o b.png --size 24x16 --tbuffer b.hits --kernel plane --fresnel schlick");
+    folder.done("render scene.toml -o c.png --size 24x16 --view normal");
+    assert!(folder.done("compare a.png a.png").out.contains("differing         0 "));
+    folder.done("compare a.hits a.hits --size 24x16");
+    let ended = folder.gz("compare a.png c.png --sheet sheet.png");
+    assert_eq!(ended.code, 4, "{}", ended.out);
+    assert!(ended.err.starts_with("gz: a.png and c.png differ in ") && ended.err.lines().count() == 1, "{}", ended.err);
+    assert_eq!(picture(&folder, "sheet.png").dimensions(), (3 * 24 + 8, 16));
+    folder.done("compare a.png c.png --tolerance 255");
+    // The plain kernel finds the same triangles here; its T-values may differ in the last bits.
+    folder.done("compare a.hits b.hits --tolerance 1e-5");
+    assert_eq!(folder.gz("compare a.png a.hits").code, 2);
+    assert_eq!(folder.gz("compare a.png none.png").code, 1);
+}
+
+#[test]
+fn a_pixel_and_a_scene_are_explained() {
+    let folder = Folder::with_scene("pixel");
+    let out = folder.done("pixel scene.toml 16 14 --size 32x24 --compare brute").out;
+    assert!(out.contains("hit        triangle ") && out.contains("primary ray from"), "{out}");
+    assert!(folder.done("pixel scene.toml 0 0 --size 32x24 --kernel plane --compare brute").out.contains("hit        nothing"));
+    let out = folder.done("info scene.toml --size 32x24").out;
+    assert!(out.contains("picture    32x24, camera pinhole\n") && out.contains("lights     1\n"), "{out}");
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let folder = Folder::with_scene("pipe");
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_gz"))
+        .args(["info", "scene.toml"])
+        .current_dir(folder.path())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("gz can be started");
+    drop(child.stdout.take());
+    let ended = child.wait_with_output().expect("gz ends by itself");
+    assert_eq!((ended.status.code(), ended.stderr.as_slice()), (Some(0), &b""[..]));
+}
