@@ -13,7 +13,7 @@ pub struct CostModel {
 impl Default for CostModel {
     /// Measured on the eight-cell walk.
     fn default() -> Self {
-        Self { cut: 0.3 }
+        Self { cut: 0.8 }
     }
 }
 
@@ -142,8 +142,6 @@ impl Bins {
 }
 
 /// Groups of eight that hold `n` triangles: what a leaf costs.
-///
-/// Part groups are priced between their share and a whole one, as deeper cuts will fill them differently.
 pub(crate) fn groups(n: u32) -> f32 {
-    if n <= 8 { 1.0 } else { n as f32 / 8.0 + 0.5 }
+    n.div_ceil(8) as f32
 }

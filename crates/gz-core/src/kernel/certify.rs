@@ -104,9 +104,24 @@ pub(crate) fn certify(ray: &GzRay, corners: &[GzCoord; 3]) -> Verdict {
         Verdict::Miss
     } else if lo > tmin && hi < tmax {
         Verdict::Hit { lo, hi }
+    } else if tmin == 0.0 && hi < tmax {
+        // The plane that a ray leaves is at t = 0 but for rounding: common enough to be decided by the sign of M alone.
+        match is_ahead(ray, corners, signs[0]) {
+            true => Verdict::Hit { lo, hi },
+            false => Verdict::Miss,
+        }
     } else {
         Verdict::Unsure
     }
+}
+
+/// Whether t = M / D is above 0, exactly, for D of the sign `d_sign`.
+fn is_ahead(ray: &GzRay, corners: &[GzCoord; 3], d_sign: i32) -> bool {
+    let coord = |p: DVec3| robust::Coord3D { x: p.x, y: p.y, z: p.z };
+    let [a, b, c] = corners.map(|p| coord(p.as_dvec3()));
+    // The predicate's determinant of a - o, b - o, c - o is M; its sign is exact.
+    let m = robust::orient3d(a, b, c, coord(ray.origin));
+    m * f64::from(d_sign) > 0.0
 }
 
 /// T, u and v of a hit, for a ray and a triangle that are known to meet.
