@@ -8,7 +8,8 @@ use gz_app::load::{self, Overrides};
 use gz_app::picture::Picture;
 use gz_app::view::trace_hits;
 use gz_app::{hits_file, output, sheet};
-use gz_core::{BruteForce, Hit, TileGrid};
+use gz_bsp::BspTree;
+use gz_core::{Hit, TileGrid};
 use gz_shade::{Antialias, Scene, SceneNeeds, shade_frame};
 use std::path::{Path, PathBuf};
 
@@ -55,13 +56,13 @@ fn render(path: &Path) -> Render {
     let grid = TileGrid::whole(WIDTH, height, 32);
 
     let (scene, needs) = place(path, &small);
-    let query = BruteForce::new(&scene.tris);
+    let query = BspTree::build(&scene.tris);
     let frame = shade_frame(&scene, needs, &query, &grid, &|_| ());
     let rgb = output::rgb8(&frame.colors, scene.rules.color_code);
 
     // T-values belong to the middle of a pixel: one ray each, whatever the scene's antialiasing.
     let (plain, _) = place(path, &Overrides { aa: Some(Antialias::None), ..small });
-    let hits = trace_hits(&plain, &BruteForce::new(&plain.tris), &grid);
+    let hits = trace_hits(&plain, &BspTree::build(&plain.tris), &grid);
     Render { picture: Picture::of_bytes(WIDTH, height, &rgb), rgb, hits }
 }
 
