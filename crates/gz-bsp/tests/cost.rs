@@ -4,7 +4,7 @@ mod common;
 
 use common::{Lcg, buffer, grid, rays, slivers, soup};
 use gz_bsp::{BspTree, CostStats, VisitCount};
-use gz_core::{BruteForce, ClassMask, GzCoord, GzRay, RayQuery, SimdLevel, TriBuffer};
+use gz_core::{BruteForce, ClassMask, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, SimdLevel, TriBuffer};
 
 fn agree(tris: &TriBuffer, rays: &[GzRay]) -> u64 {
     let brute = BruteForce::new(tris);
@@ -34,6 +34,65 @@ fn hits_equal_those_of_brute_force() {
     let compared: u64 = scenes.iter().map(|tris| agree(tris, &rays(&mut lcg, tris, 3000))).sum();
     println!("{compared} rays, 0 differ");
     assert_eq!(agree(&TriBuffer::new(), &[GzRay::new(GzCoord::ZERO, GzCoord::ONE)]), SimdLevel::available().len() as u64);
+}
+
+#[test]
+fn rays_that_go_together_are_answered_like_rays_alone() {
+    let mut lcg = Lcg(8);
+    let mut compared = 0;
+    for tris in [soup(&mut lcg, 2000, 0.05), grid(&mut lcg, 20), slivers(&mut lcg, 100), soup(&mut lcg, 20, 1.0)] {
+        let brute = BruteForce::new(&tris);
+        let bounds = tris.bounds();
+        let mut batches: Vec<Vec<GzRay>> = Vec::new();
+        for k in 0..120 {
+            // Beams from one point, side by side, from surfaces, and in the plane of a cut; tight and wide; some with ends.
+            let eye = bounds.centre() + (lcg.point() - 0.5) * bounds.size() * 3.0;
+            let aim = bounds.min + lcg.point() * bounds.size() - eye;
+            let spread = [1e-4, 0.01, 0.3][k % 3] * aim.length();
+            let beam = (0..37).map(|_| {
+                let mut direction = aim + (lcg.point() - 0.5) * spread;
+                let mut origin = eye;
+                match k % 5 {
+                    1 => origin += (lcg.point() - 0.5) * spread,
+                    2 => direction[k % 3] = [0.0, -0.0][(lcg.unit() * 2.0) as usize],
+                    3 => origin = bounds.centre(),
+                    4 => origin = tris.position((k % tris.len()) as u32)[0],
+                    _ => {}
+                }
+                let tmax = if k % 7 == 0 { lcg.unit() * 2.0 } else { f32::INFINITY };
+                GzRay { tmax, ..GzRay::new(origin, direction) }
+            });
+            batches.push(beam.collect());
+        }
+        for rays in &batches {
+            let column = |of: fn(&GzRay) -> f32| rays.iter().map(of).collect::<Vec<_>>();
+            let (origins, directions): (Vec<_>, Vec<_>) = rays.iter().map(|ray| (ray.origin, ray.direction)).unzip();
+            let (tmin, tmax) = (column(|ray| ray.tmin), column(|ray| ray.tmax));
+            let batch = RayBatch::new(
+                rays.len(),
+                PerRay::Each(&origins),
+                PerRay::Each(&directions),
+                PerRay::Each(&tmin),
+                PerRay::Each(&tmax),
+            );
+            let (mut expected, mut blocked) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);
+            brute.closest_hits(&batch, ClassMask::ALL, &mut expected);
+            for &level in SimdLevel::available() {
+                let tree = BspTree::build(&tris).with_simd(level);
+                let mut hits = expected.clone();
+                hits.fill(Hit::MISS);
+                tree.closest_hits(&batch, ClassMask::ALL, &mut hits);
+                tree.any_hits(&batch, ClassMask::ALL, &mut blocked);
+                for (k, ray) in rays.iter().enumerate() {
+                    assert_eq!(hits[k], expected[k], "{level:?} {ray:?}");
+                    assert_eq!(blocked[k], expected[k].is_hit(), "{level:?} {ray:?}");
+                    compared += 1;
+                }
+            }
+        }
+    }
+    println!("{compared} rays, 0 differ");
+    assert!(compared > 15_000);
 }
 
 #[test]

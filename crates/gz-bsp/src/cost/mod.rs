@@ -7,6 +7,7 @@
 mod build;
 mod check;
 mod clip;
+mod packet;
 mod split;
 mod stats;
 mod tight;

@@ -9,20 +9,21 @@
 //! the triangle and so in all boxes above it; each is entered at or before t* and left at or after, so the walk reaches that leaf unless
 //! t* is beyond the best hit so far. A node is left out only when its entry is beyond that hit, rounded up.
 
-use super::wide::{BspTree, Child, Target, WIDTH, WideNode};
+use super::packet::{Packet, PacketWalk, RAYS, Waiting};
+use super::wide::{BspTree, Child, Target, WideNode};
 use crate::Visits;
 use gz_core::kernel::{Closest, FilterRay, is_hit};
 use gz_core::simd::{Lanes, Task, dispatch};
 use gz_core::{ClassMask, GzRay, Hit, NO_TRI, RayBatch, RayQuery, TriBuffer, with_default_float_control};
 
 /// A ray as the nodes see it.
-struct Slabs {
+pub(super) struct Slabs {
     /// Index into a node's planes of the end where the ray enters, by axis.
-    near: [usize; 3],
-    inverse: [f32; 3],
-    enter: [f32; 3],
-    leave: [f32; 3],
-    tmin: f32,
+    pub(super) near: [usize; 3],
+    pub(super) inverse: [f32; 3],
+    pub(super) enter: [f32; 3],
+    pub(super) leave: [f32; 3],
+    pub(super) tmin: f32,
 }
 
 const E: f64 = (f32::EPSILON / 2.0) as f64;
@@ -36,7 +37,7 @@ const LEAST_COMPONENT: f32 = 1.0 / (1u64 << 40) as f32;
 const STILL_PAD: f64 = 1.0 / (1u64 << 38) as f64;
 
 impl Slabs {
-    fn new(ray: &GzRay, scene_reach: f32) -> Option<Self> {
+    pub(super) fn new(ray: &GzRay, scene_reach: f32) -> Option<Self> {
         let largest = ray.direction.abs().max_element();
         let reach = f64::from(scene_reach) + ray.origin.abs().max_element();
         if reach > GREATEST_REACH || !(1.0 / GREATEST_DIRECTION..=GREATEST_DIRECTION).contains(&largest) {
@@ -76,7 +77,7 @@ impl Slabs {
 pub(crate) type Stack = Vec<(Child, f32)>;
 
 /// What is asked of a walk. `limit` is the distance beyond which nothing matters.
-trait Quest {
+pub(super) trait Quest {
     /// Tests a triangle and returns the new limit, or `None` when the quest is over.
     fn test(&mut self, tri: u32) -> Option<f32>;
 }
@@ -164,7 +165,7 @@ fn sort_far_first(cells: &mut [(Child, f32)]) {
 
 struct Nearest<'q> {
     tris: &'q TriBuffer,
-    ray: &'q GzRay,
+    ray: GzRay,
     classes: ClassMask,
     closest: Closest,
 }
@@ -173,7 +174,7 @@ impl Quest for Nearest<'_> {
     #[inline(always)]
     fn test(&mut self, tri: u32) -> Option<f32> {
         if self.classes.has(self.tris.class(tri)) {
-            self.closest.consider(self.ray, tri, self.tris.positions());
+            self.closest.consider(&self.ray, tri, self.tris.positions());
         }
         Some((self.closest.distance() as f32).next_up())
     }
@@ -181,7 +182,7 @@ impl Quest for Nearest<'_> {
 
 struct Any<'q> {
     tris: &'q TriBuffer,
-    ray: &'q GzRay,
+    ray: GzRay,
     classes: ClassMask,
     found: bool,
 }
@@ -189,7 +190,7 @@ struct Any<'q> {
 impl Quest for Any<'_> {
     #[inline(always)]
     fn test(&mut self, tri: u32) -> Option<f32> {
-        self.found = self.classes.has(self.tris.class(tri)) && is_hit(self.ray, self.tris.position(tri));
+        self.found = self.classes.has(self.tris.class(tri)) && is_hit(&self.ray, self.tris.position(tri));
         (!self.found).then_some(f32::INFINITY)
     }
 }
@@ -206,13 +207,13 @@ impl BspTree<'_> {
     }
 
     fn closest(&self, ray: &GzRay, classes: ClassMask, stack: &mut Stack, visits: &mut impl Visits) -> Hit {
-        let mut quest = Nearest { tris: self.tris, ray, classes, closest: Closest::default() };
+        let mut quest = Nearest { tris: self.tris, ray: *ray, classes, closest: Closest::default() };
         self.send(ray, stack, &mut quest, visits);
         quest.closest.hit(ray, self.tris.positions())
     }
 
     fn any(&self, ray: &GzRay, classes: ClassMask, stack: &mut Stack, visits: &mut impl Visits) -> bool {
-        let mut quest = Any { tris: self.tris, ray, classes, found: false };
+        let mut quest = Any { tris: self.tris, ray: *ray, classes, found: false };
         self.send(ray, stack, &mut quest, visits);
         quest.found
     }
@@ -267,9 +268,10 @@ impl RayQuery for BspTree<'_> {
     fn closest_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, hits: &mut [Hit]) {
         assert_eq!(rays.len(), hits.len(), "one hit a ray");
         with_default_float_control(|| {
-            let mut stack = Stack::with_capacity(8 * WIDTH * WIDTH);
-            for (i, hit) in hits.iter_mut().enumerate() {
-                *hit = self.closest(&rays.ray(i), classes, &mut stack, &mut ());
+            let mut room = Room::default();
+            for (from, hits) in (0..).step_by(RAYS).zip(hits.chunks_mut(RAYS)) {
+                let start = |ray: &GzRay| Nearest { tris: self.tris, ray: *ray, classes, closest: Closest::default() };
+                self.ask(rays, from, hits, &mut room, start, |ray, quest| quest.closest.hit(ray, self.tris.positions()));
             }
         });
     }
@@ -277,10 +279,52 @@ impl RayQuery for BspTree<'_> {
     fn any_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "one answer a ray");
         with_default_float_control(|| {
-            let mut stack = Stack::with_capacity(8 * WIDTH * WIDTH);
-            for (i, occluded) in occluded.iter_mut().enumerate() {
-                *occluded = self.any(&rays.ray(i), classes, &mut stack, &mut ());
+            let mut room = Room::default();
+            for (from, occluded) in (0..).step_by(RAYS).zip(occluded.chunks_mut(RAYS)) {
+                let start = |ray: &GzRay| Any { tris: self.tris, ray: *ray, classes, found: false };
+                self.ask(rays, from, occluded, &mut room, start, |_, quest| quest.found);
             }
         });
+    }
+}
+
+/// Stacks, kept from ray to ray.
+#[derive(Default)]
+struct Room {
+    single: Stack,
+    packet: Vec<Waiting>,
+}
+
+impl BspTree<'_> {
+    /// Answers rays `from..` of a batch, as many as there are `answers`: together when there are sixteen that go the same way, else one by
+    /// one.
+    fn ask<Q: Quest, A>(
+        &self,
+        rays: &RayBatch<'_>,
+        from: usize,
+        answers: &mut [A],
+        room: &mut Room,
+        start: impl Fn(&GzRay) -> Q,
+        answer: impl Fn(&GzRay, &Q) -> A,
+    ) {
+        if answers.len() == RAYS {
+            let together: [GzRay; RAYS] = std::array::from_fn(|k| rays.ray(from + k));
+            if let Some(packet) = Packet::new(&together, self.reach) {
+                let mut quests = std::array::from_fn(|k| start(&together[k]));
+                let limits = std::array::from_fn(|half| std::array::from_fn(|lane| together[8 * half + lane].tmax));
+                let walk = PacketWalk { tree: self, packet: &packet, stack: &mut room.packet, limits, quests: &mut quests };
+                dispatch(self.level, walk);
+                for (to, (ray, quest)) in answers.iter_mut().zip(together.iter().zip(&quests)) {
+                    *to = answer(ray, quest);
+                }
+                return;
+            }
+        }
+        for (k, to) in answers.iter_mut().enumerate() {
+            let ray = rays.ray(from + k);
+            let mut quest = start(&ray);
+            self.send(&ray, &mut room.single, &mut quest, &mut ());
+            *to = answer(&ray, &quest);
+        }
     }
 }
