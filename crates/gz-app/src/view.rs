@@ -29,7 +29,7 @@ pub fn trace_hits(scene: &Scene, query: &dyn RayQuery, grid: &TileGrid) -> Vec<H
     let area = grid.area();
     let mut hits = vec![Hit::MISS; area.len()];
     for (tile, pixels) in grid.tiles().zip(&tiles) {
-        for ((i, j), pixel) in tile.pixels().zip(pixels) {
+        for ((i, j), pixel) in tile.in_squares().zip(pixels) {
             hits[(j - area.y0) as usize * area.width() as usize + (i - area.x0) as usize] = pixel.hit;
         }
     }

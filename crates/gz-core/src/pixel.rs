@@ -24,7 +24,7 @@ impl GzPixel {
     }
 }
 
-/// The primary rays of a tile, traced: pixel `k` of `out` is pixel `k` of the tile, row by row.
+/// The primary rays of a tile, traced: pixel `k` of `out` is pixel `k` of [`Tile::in_squares`].
 ///
 /// `offset` moves every ray by a part of a pixel, x right and y down; antialiasing traces a tile once per offset.
 pub fn trace_tile(
@@ -36,7 +36,7 @@ pub fn trace_tile(
     out: &mut Vec<GzPixel>,
 ) {
     scratch.places.clear();
-    scratch.places.extend(tile.pixels());
+    scratch.places.extend(tile.in_squares());
     let rays = camera.rays(&scratch.places, offset, &mut scratch.rays);
     scratch.hits.clear();
     scratch.hits.resize(rays.len(), Hit::MISS);
@@ -86,7 +86,7 @@ impl TBuffer {
             let (mut scratch, mut pixels) = (TileScratch::default(), Vec::new());
             for tile in TileGrid::of(rows, BAND).tiles() {
                 trace_tile(&tile, DVec2::ZERO, camera, query, &mut scratch, &mut pixels);
-                for ((i, j), pixel) in tile.pixels().zip(&pixels) {
+                for ((i, j), pixel) in tile.in_squares().zip(&pixels) {
                     hits[(j - y0) as usize * width + i as usize] = pixel.hit;
                 }
             }

@@ -39,6 +39,11 @@ impl Tile {
         let tile = *self;
         (tile.y0..tile.y1).flat_map(move |j| (tile.x0..tile.x1).map(move |i| (i, j)))
     }
+
+    /// (column, row) of each pixel, square by square of four by four: the order in which rays are traced, as neighbours go the same way.
+    pub fn in_squares(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        TileGrid::of(*self, 4).into_tiles().flat_map(|square| square.pixels())
+    }
 }
 
 /// A rectangle cut into square tiles; the last column and row may be smaller.
@@ -89,8 +94,12 @@ impl TileGrid {
     }
 
     /// All tiles, row by row.
-    pub fn tiles(&self) -> impl Iterator<Item = Tile> + '_ {
-        (0..self.len()).map(|k| self.tile(k))
+    pub fn tiles(&self) -> impl Iterator<Item = Tile> + use<> {
+        self.into_tiles()
+    }
+
+    fn into_tiles(self) -> impl Iterator<Item = Tile> + use<> {
+        (0..self.len()).map(move |k| self.tile(k))
     }
 
     fn columns(&self) -> u32 {
@@ -108,7 +117,8 @@ mod tests {
             let mut seen = vec![0u32; (width * height) as usize];
             for tile in TileGrid::whole(width, height, size).tiles() {
                 assert!(!tile.is_empty());
-                tile.pixels().for_each(|(i, j)| seen[(j * width + i) as usize] += 1);
+                tile.in_squares().for_each(|(i, j)| seen[(j * width + i) as usize] += 1);
+                assert_eq!(tile.pixels().count(), tile.len());
             }
             assert!(seen.iter().all(|&n| n == 1), "{width}x{height} by {size}");
         }

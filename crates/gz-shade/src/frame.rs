@@ -60,17 +60,15 @@ pub fn shade_frame(
     let area = grid.area();
     let mut frame = Frame { area, colors: vec![GzColor::ZERO; area.len()], stats: FrameStats::default() };
     for (tile, colors, stats) in tiles {
-        let width = tile.width() as usize;
-        for (row, colors) in (tile.y0..tile.y1).zip(colors.chunks_exact(width)) {
-            let start = (row - area.y0) as usize * area.width() as usize + (tile.x0 - area.x0) as usize;
-            frame.colors[start..start + width].copy_from_slice(colors);
+        for ((x, y), color) in tile.in_squares().zip(colors) {
+            frame.colors[(y - area.y0) as usize * area.width() as usize + (x - area.x0) as usize] = color;
         }
         frame.stats += stats;
     }
     frame
 }
 
-/// Shades the pixels of `tile` into `colors`, row by row, and adds what it took to `stats`.
+/// Shades the pixels of `tile` into `colors`, in the order of [`Tile::in_squares`], and adds what it took to `stats`.
 pub fn shade_tile(
     scene: &Scene,
     needs: SceneNeeds,
@@ -124,7 +122,7 @@ pub(crate) fn trace_and_shade(
     // Primary rays -> T-value pixels: the roots.
     trace_tile(tile, offset, &scene.camera, query, primary, pixels);
     tree.clear();
-    let rays = tile.pixels().map(|(i, j)| scene.camera.ray(i, j, offset));
+    let rays = tile.in_squares().map(|(i, j)| scene.camera.ray(i, j, offset));
     tree.nodes.extend(rays.zip(pixels.iter()).map(|(ray, pixel)| Node::root(ray, pixel.hit)));
     stats.primary_rays += pixels.len() as u64;
     stats.primary_hits += pixels.iter().filter(|pixel| pixel.hit.is_hit()).count() as u64;
