@@ -63,9 +63,9 @@ impl Bounds {
         2.0 * (s.x * s.y + s.y * s.z + s.z * s.x)
     }
 
-    /// The greatest magnitude of any coordinate of the box; 0 when empty.
-    pub fn reach(&self) -> f32 {
-        if self.is_empty() { 0.0 } else { self.min.abs().max(self.max.abs()).max_element() }
+    /// The greatest magnitude of any coordinate of the box along each axis; 0 when empty.
+    pub fn reaches(&self) -> GzCoord {
+        if self.is_empty() { GzCoord::ZERO } else { self.min.abs().max(self.max.abs()) }
     }
 }
 
@@ -85,7 +85,7 @@ mod tests {
         let p = GzCoord::new(1.0, -2.0, 3.0);
         assert!(Bounds::EMPTY.is_empty());
         assert_eq!(Bounds::of([p]), Bounds { min: p, max: p });
-        assert_eq!((Bounds::EMPTY.area(), Bounds::EMPTY.reach()), (0.0, 0.0));
+        assert_eq!((Bounds::EMPTY.area(), Bounds::EMPTY.reaches()), (0.0, GzCoord::ZERO));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::walk::{Quest, Slabs};
 use super::wide::{BspTree, Child, Target, WideNode};
 use gz_core::kernel::FilterRay;
 use gz_core::simd::{Lanes, Task};
-use gz_core::{GzRay, NO_TRI};
+use gz_core::{GzCoord, GzRay, NO_TRI};
 
 /// Rays of a packet: two times eight lanes.
 pub(super) const RAYS: usize = 16;
@@ -33,7 +33,7 @@ pub(super) struct Packet {
 
 impl Packet {
     /// The packet of these rays; `None` when they are not fit to go together.
-    pub(super) fn new(rays: &[GzRay; RAYS], scene_reach: f32) -> Option<Self> {
+    pub(super) fn new(rays: &[GzRay; RAYS], scene_reach: GzCoord) -> Option<Self> {
         // The cheapest reason first: most rays that do not go together differ in a sign.
         let signs = |ray: &GzRay| ray.direction.to_array().map(|d| d < 0.0);
         if rays[1..].iter().any(|ray| signs(ray) != signs(&rays[0])) {

@@ -2,7 +2,7 @@
 //!
 //! e = 2^-24. A cell's box is crossed between t = (p - o) / d for its planes p. It is computed as p r - (c -+ E) in f32, with r = 1/d and c =
 //! o/d rounded from f64. Against the true t the product is off by at most 2 e |p/d| (r and the product), c by e |o/d|, the subtraction by
-//! e (|p/d| + |o/d|)(1 + 3e): in all at most 4 e (|p| + |o|) / |d|. E is 8 e (max |p| + |o|) / |d|, put into the two constants of an axis once per ray
+//! e (|p/d| + |o/d|)(1 + 3e): in all at most 4 e (|p| + |o|) / |d|. E is 8 e (max |p| + |o|) / |d| along the axis, put into the two constants of an axis once per ray
 //! and rounded outward, so every entry is at most the true one and every exit at least. A fused multiply-add only removes a rounding.
 //!
 //! **Why no hit is lost.** A hit lies at the exact t* in a point P of the triangle. By construction P lies in the box of a leaf that lists
@@ -14,7 +14,7 @@ use super::wide::{BspTree, Child, Target, WideNode};
 use crate::Visits;
 use gz_core::kernel::{Closest, FilterRay, is_hit};
 use gz_core::simd::{Lanes, Task, dispatch};
-use gz_core::{ClassMask, GzRay, Hit, NO_TRI, RayBatch, RayQuery, TriBuffer, with_default_float_control};
+use gz_core::{ClassMask, GzCoord, GzRay, Hit, NO_TRI, RayBatch, RayQuery, TriBuffer, with_default_float_control};
 
 /// A ray as the nodes see it.
 pub(super) struct Slabs {
@@ -37,9 +37,9 @@ const LEAST_COMPONENT: f32 = 1.0 / (1u64 << 40) as f32;
 const STILL_PAD: f64 = 1.0 / (1u64 << 38) as f64;
 
 impl Slabs {
-    pub(super) fn new(ray: &GzRay, scene_reach: f32) -> Option<Self> {
+    pub(super) fn new(ray: &GzRay, scene_reach: GzCoord) -> Option<Self> {
         let largest = ray.direction.abs().max_element();
-        let reach = f64::from(scene_reach) + ray.origin.abs().max_element();
+        let reach = f64::from(scene_reach.max_element()) + ray.origin.abs().max_element();
         if reach > GREATEST_REACH || !(1.0 / GREATEST_DIRECTION..=GREATEST_DIRECTION).contains(&largest) {
             return None;
         }
@@ -50,7 +50,7 @@ impl Slabs {
             let (d, still) = if d.abs() < least { (least.copysign(d), STILL_PAD * reach) } else { (d, 0.0) };
             let inverse = 1.0 / f64::from(d);
             let c = ray.origin[axis] * inverse;
-            let pad = (8.0 * E * (f64::from(scene_reach) + ray.origin[axis].abs()) + still) * inverse.abs();
+            let pad = (8.0 * E * (f64::from(scene_reach[axis]) + ray.origin[axis].abs()) + still) * inverse.abs();
             slabs.near[axis] = 2 * axis + usize::from(d < 0.0);
             slabs.inverse[axis] = inverse as f32;
             slabs.enter[axis] = ((c + pad) as f32).next_up();

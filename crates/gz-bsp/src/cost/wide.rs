@@ -3,7 +3,7 @@
 use super::build::{Cell, Content, build};
 use super::split::CostModel;
 use gz_core::kernel::TriGroup;
-use gz_core::{Bounds, SimdLevel, TriBuffer};
+use gz_core::{Bounds, GzCoord, SimdLevel, TriBuffer};
 
 /// Cells of a node.
 pub(crate) const WIDTH: usize = 8;
@@ -97,8 +97,8 @@ pub struct BspTree<'a> {
     /// The root is the first; a tree without triangles has one node without cells.
     pub(crate) nodes: Vec<WideNode>,
     pub(crate) groups: Vec<TriGroup>,
-    /// The greatest magnitude of a coordinate.
-    pub(crate) reach: f32,
+    /// The greatest magnitude of a coordinate along each axis.
+    pub(crate) reach: GzCoord,
 }
 
 impl<'a> BspTree<'a> {
@@ -110,7 +110,7 @@ impl<'a> BspTree<'a> {
     /// The same by another cost model.
     pub fn with_cost(tris: &'a TriBuffer, model: CostModel) -> Self {
         let mut tree =
-            Self { tris, level: SimdLevel::best(), nodes: Vec::new(), groups: Vec::new(), reach: tris.bounds().reach() };
+            Self { tris, level: SimdLevel::best(), nodes: Vec::new(), groups: Vec::new(), reach: tris.bounds().reaches() };
         let root = build(tris, model);
         tree.place(&root);
         tree.nodes.shrink_to_fit();

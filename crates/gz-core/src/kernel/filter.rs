@@ -3,15 +3,15 @@
 //! e = 2^-24 is the unit roundoff of f32. The shear of Woop, Benthin and Wald (JCGT 2:1, 2013) brings the ray to the z axis, so each
 //! edge function is two products. It differs from theirs in what it is for: it only rejects, by a bound, and never accepts.
 //!
-//! **Why no hit is rejected.** Let R be at least every |vertex - origin| (max norm). The origin is rounded to f32, each difference
-//! rounds once, so a difference errs by at most e (R + |o|)(1 + 2e). The slope S = dx/dz, |S| <= 1, is rounded to f32: e. A sheared
-//! coordinate x = Ax - S Az then errs by e (R + |o|) twice (both differences), e R for the slope, e R for the product and 2 e R for
-//! the subtraction, in all less than delta = 8 e (R + |o|), the room above 6 covering terms of order e^2. If the line meets the triangle,
-//! the sheared triangle holds the origin, and so every sheared corner is within the sheared edge length, 2 L for L the longest edge
-//! in max norm, of it: the computed corners are within m = 2 L + delta. Then an edge function Cx By - Cy Bx computed from them is off by
-//! at most 4 m delta through its inputs and 4 e m^2 (1 + e) through its own roundings. E = 4.5 m delta + 12 e m^2 + 2^-124 covers both,
-//! the roundings of E itself, and underflow, with or without flush-to-zero. A true hit has edge functions of one sign or 0, so the
-//! computed ones cannot be below -E and above E at once. Fused multiply-adds only remove roundings.
+//! **Why no hit is rejected.** For each axis k let R be at least every |vertex - origin| along it. The origin is rounded to f32, each
+//! difference rounds once, so a difference errs by at most e (R + |o|)(1 + 2e). The slope S = dx/dz, |S| <= 1, is rounded to f32. A sheared
+//! coordinate x = Ax - S Az then errs by e (Rx + |ox|) and |S| e (Rz + |oz|) (both differences), |S| e Rz for the slope, as much for the
+//! product, and e (Rx + |S| Rz) for the subtraction: in all less than 4 e (Rx + |ox| + |S| (Rz + |oz|)); delta has 5.5 in place of 4 for
+//! terms of order e^2 and its own roundings. An edge function Cx By - Cy Bx computed from sheared coordinates that are at most X and Y in
+//! magnitude is off by at most 2 (X dy + Y dx + dx dy) through its inputs and 4 e X Y (1 + e) through its own roundings. With X' = X + dx and
+//! Y' = Y + dy the bound E = 2.1 (X' dy + Y' dx) + 5 e X' Y' + 2^-124 covers both, the roundings of E itself, and underflow, with or
+//! without flush-to-zero. A true hit has edge functions of one sign or 0, so the computed ones cannot be below -E and above E at once.
+//! Fused multiply-adds only remove roundings.
 
 use crate::simd::SimdLevel;
 use crate::{Bounds, GzCoord, GzRay, TriId};
@@ -25,8 +25,6 @@ pub(crate) const LANES: usize = 16;
 pub(crate) struct Block {
     /// `v[3 * corner + axis][lane]`.
     v: [[f32; LANES]; 9],
-    /// The longest edge of each triangle in max norm, rounded up.
-    longest: [f32; LANES],
 }
 
 /// All triangles in blocks, in order; the last block is filled up with copies of its first triangle, which are never reported.
@@ -44,7 +42,8 @@ pub struct FilterRay {
     pub(super) axes: [usize; 3],
     pub(super) origin: [f32; 3],
     pub(super) slope: [f32; 2],
-    pub(super) delta: f32,
+    /// How far the sheared coordinates of a corner may be off.
+    pub(super) delta: [f32; 2],
 }
 
 /// 2^60: squares of sheared coordinates beyond it could overflow, so the filter then lets everything through.
@@ -54,9 +53,9 @@ pub(super) const E: f32 = f32::EPSILON / 2.0;
 pub(super) const FLOOR: f32 = f32::MIN_POSITIVE * 4.0;
 
 impl FilterRay {
-    /// Prepares a valid `ray` for triangles whose coordinates are at most `scene_reach` in magnitude; `None` when coordinates are too
-    /// large for the filter's bound, 2^60 with the origin's added.
-    pub fn new(ray: &GzRay, scene_reach: f32) -> Option<Self> {
+    /// Prepares a valid `ray` for triangles whose coordinates along each axis are at most `scene_reach` in magnitude; `None` when
+    /// coordinates are too large for the filter's bound, 2^60 with the origin's added.
+    pub fn new(ray: &GzRay, scene_reach: GzCoord) -> Option<Self> {
         let d = ray.direction.as_dvec3().to_array();
         let z = if d[0].abs() >= d[1].abs() && d[0].abs() >= d[2].abs() {
             0
@@ -67,18 +66,20 @@ impl FilterRay {
         };
         let axes = [(z + 1) % 3, (z + 2) % 3, z];
         let origin = ray.origin.to_array();
-        let reach_of_origin = origin.iter().fold(0f64, |m, x| m.max(x.abs()));
-        let reach = f64::from(scene_reach) + reach_of_origin;
-        if reach > f64::from(REACH) {
+        // R + |o| by axis, with R = scene_reach + |o|.
+        let [x, y, z] = axes.map(|k| f64::from(scene_reach[k]) + 2.0 * origin[k].abs());
+        if x.max(y).max(z) > f64::from(REACH) {
             return None;
         }
-        // Rounding to f32 can lose half an ulp; 9 instead of 8 covers it many times over.
-        let delta = (9.0 * f64::from(E) * (reach + reach_of_origin)) as f32;
+        let slope = [d[axes[0]] / d[axes[2]], d[axes[1]] / d[axes[2]]];
+        // 2^-125 of z for a slope that is too small for f32.
+        let delta =
+            |across: f64, slope: f64| (5.5 * f64::from(E) * (across + slope.abs() * z) + f64::from(FLOOR) / 2.0 * z) as f32;
         Some(Self {
             axes,
             origin: axes.map(|k| origin[k] as f32),
-            slope: [(d[axes[0]] / d[z]) as f32, (d[axes[1]] / d[z]) as f32],
-            delta,
+            slope: slope.map(|s| s as f32),
+            delta: [delta(x, slope[0]), delta(y, slope[1])],
         })
     }
 }
@@ -89,10 +90,7 @@ impl Blocks {
             .chunks(LANES)
             .map(|group| {
                 let corner = |lane: usize| group.get(lane).unwrap_or(&group[0]);
-                Block {
-                    v: std::array::from_fn(|k| std::array::from_fn(|lane| corner(lane)[k / 3].to_array()[k % 3])),
-                    longest: std::array::from_fn(|lane| longest_edge(corner(lane))),
-                }
+                Block { v: std::array::from_fn(|k| std::array::from_fn(|lane| corner(lane)[k / 3].to_array()[k % 3])) }
             })
             .collect();
         let bounds = Bounds::of(positions.iter().flatten().copied());
@@ -117,7 +115,7 @@ impl Blocks {
 
     /// The ray prepared, or `None` when coordinates are too large for the filter's bound.
     pub(crate) fn prepare(&self, ray: &GzRay) -> Option<FilterRay> {
-        FilterRay::new(ray, self.bounds.reach())
+        FilterRay::new(ray, self.bounds.reaches())
     }
 
     /// Appends the numbers of all triangles of the blocks `from..to` that `ray` may hit.
@@ -131,19 +129,11 @@ impl Blocks {
     }
 }
 
-/// The longest edge in max norm, rounded up.
-pub(super) fn longest_edge(corners: &[GzCoord; 3]) -> f32 {
-    let [a, b, c] = corners.map(|p| p.as_dvec3());
-    let longest = (b - a).abs().max((c - b).abs()).max((a - c).abs()).max_element();
-    let rounded = longest as f32;
-    if f64::from(rounded) < longest { rounded.next_up() } else { rounded }
-}
-
 /// The filter's one body; each SIMD level compiles it for itself.
 #[inline(always)]
 pub(crate) fn filter_body(blocks: &[Block], ray: &FilterRay, first: TriId, out: &mut Vec<TriId>) {
     let [kx, ky, kz] = ray.axes;
-    let ([ox, oy, oz], [sx, sy], delta) = (ray.origin, ray.slope, ray.delta);
+    let ([ox, oy, oz], [sx, sy], [dx, dy]) = (ray.origin, ray.slope, ray.delta);
     let mut id = first;
     for block in blocks {
         let v = &block.v;
@@ -156,8 +146,9 @@ pub(crate) fn filter_body(blocks: &[Block], ray: &FilterRay, first: TriId, out: 
             let (x1, y1) = ((bx[i] - ox) - sx * z1, (by[i] - oy) - sy * z1);
             let (x2, y2) = ((cx[i] - ox) - sx * z2, (cy[i] - oy) - sy * z2);
             let (u, v, w) = (x2 * y1 - y2 * x1, x0 * y2 - y0 * x2, x1 * y0 - y1 * x0);
-            let m = 2.0 * block.longest[i] + delta;
-            let bound = m * (4.5 * delta + 12.0 * E * m) + FLOOR;
+            let mx = greater(greater(x0.abs(), x1.abs()), x2.abs()) + dx;
+            let my = greater(greater(y0.abs(), y1.abs()), y2.abs()) + dy;
+            let bound = my * (2.1 * dx + 5.0 * E * mx) + (mx * (2.1 * dy) + FLOOR);
             // NaN compares false: what cannot be judged is kept.
             let below = (u < -bound) | (v < -bound) | (w < -bound);
             let above = (u > bound) | (v > bound) | (w > bound);
@@ -172,4 +163,10 @@ pub(crate) fn filter_body(blocks: &[Block], ray: &FilterRay, first: TriId, out: 
         }
         id += LANES as TriId;
     }
+}
+
+/// The processor's maximum: `f32::max` has rules for NaN that cost two more instructions.
+#[inline(always)]
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }

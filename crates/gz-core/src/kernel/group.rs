@@ -1,10 +1,10 @@
 //! Eight triangles side by side, for the leaves of a tree.
 
-use super::filter::{E, FLOOR, FilterRay, longest_edge};
+use super::filter::{E, FLOOR, FilterRay};
 use crate::simd::Lanes;
 use crate::{GzCoord, NO_TRI, TriId};
 
-/// Up to eight triangles, coordinate by coordinate, 352 bytes.
+/// Up to eight triangles, coordinate by coordinate, 320 bytes.
 ///
 /// Unused lanes repeat the first triangle and have the number [`NO_TRI`].
 #[derive(Clone, Debug, PartialEq)]
@@ -12,8 +12,6 @@ use crate::{GzCoord, NO_TRI, TriId};
 pub struct TriGroup {
     /// `v[3 * corner + axis][lane]`.
     v: [[f32; 8]; 9],
-    /// The longest edge of each triangle in max norm, rounded up.
-    longest: [f32; 8],
     ids: [TriId; 8],
 }
 
@@ -27,7 +25,6 @@ impl TriGroup {
         let corners = |lane: usize| &positions[ids[if lane < ids.len() { lane } else { 0 }] as usize];
         Self {
             v: std::array::from_fn(|k| std::array::from_fn(|lane| corners(lane)[k / 3].to_array()[k % 3])),
-            longest: std::array::from_fn(|lane| longest_edge(corners(lane))),
             ids: std::array::from_fn(|lane| ids.get(lane).copied().unwrap_or(NO_TRI)),
         }
     }
@@ -54,10 +51,11 @@ impl TriGroup {
         let u = x2.mul_sub(y1, y2.times(x1));
         let v = x0.mul_sub(y2, y0.times(x2));
         let w = x1.mul_sub(y0, y1.times(x0));
-        let delta = L::splat(ray.delta);
-        let longest = L::load(&self.longest);
-        let m = longest.plus(longest).plus(delta);
-        let bound = m.mul_add(m.mul_add(L::splat(12.0 * E), L::splat(4.5 * ray.delta)), L::splat(FLOOR));
+        let [dx, dy] = ray.delta;
+        let mx = x0.abs().max(x1.abs()).max(x2.abs()).plus(L::splat(dx));
+        let my = y0.abs().max(y1.abs()).max(y2.abs()).plus(L::splat(dy));
+        let share = mx.mul_add(L::splat(5.0 * E), L::splat(2.1 * dx));
+        let bound = my.mul_add(share, mx.mul_add(L::splat(2.1 * dy), L::splat(FLOOR)));
         let (least, most) = (u.min(v).min(w), u.max(v).max(w));
         let below = least.plus(bound).below(L::splat(0.0));
         let above = bound.below(most);
@@ -117,7 +115,7 @@ mod tests {
             let at = [target[0], (target[0] + target[1]) * 0.5, (target[0] + target[1] + target[2]) / 3.0][round % 3];
             let origin = point(1.0) - GzCoord::Z * 2.0;
             let ray = GzRay::new(origin, at - origin);
-            let filter = FilterRay::new(&ray, Bounds::of(positions.iter().flatten().copied()).reach()).unwrap();
+            let filter = FilterRay::new(&ray, Bounds::of(positions.iter().flatten().copied()).reaches()).unwrap();
             for &level in SimdLevel::available() {
                 let mask = dispatch(level, Ask(&group, &filter));
                 for (lane, corners) in positions.iter().enumerate() {

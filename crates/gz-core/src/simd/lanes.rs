@@ -23,6 +23,8 @@ pub trait Lanes: Copy {
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// Lane by lane `self * factor - term`, with one or two roundings.
     fn mul_sub(self, factor: Self, term: Self) -> Self;
+    /// Lane by lane without its sign.
+    fn abs(self) -> Self;
     /// The lesser of each lane.
     fn min(self, other: Self) -> Self;
     /// The greater of each lane.
@@ -103,6 +105,10 @@ impl Lanes for Portable {
         self.times(factor).minus(term)
     }
     #[inline(always)]
+    fn abs(self) -> Self {
+        each(self, self, |a, _| a.abs())
+    }
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         each(self, other, |a, b| if a < b { a } else { b })
     }
@@ -181,6 +187,11 @@ mod x86 {
             Self(call!(_mm256_fmsub_ps(self.0, factor.0, term.0)))
         }
         #[inline(always)]
+        fn abs(self) -> Self {
+            let sign = call!(_mm256_set1_ps(-0.0));
+            Self(call!(_mm256_andnot_ps(sign, self.0)))
+        }
+        #[inline(always)]
         fn min(self, other: Self) -> Self {
             Self(call!(_mm256_min_ps(self.0, other.0)))
         }
@@ -215,10 +226,11 @@ mod tests {
             let a = L::load(&[1.0, -2.0, 3.5, 0.0, -0.5, 8.0, 1e30, 7.0]);
             let b = L::load(&[2.0, -2.0, 0.25, 4.0, 16.0, -1.0, 1.0, 7.5]);
             let c = L::splat(2.0);
-            let mut out: Vec<f32> = [a.plus(b), a.minus(b), a.times(b), a.mul_add(b, c), a.mul_sub(b, c), a.min(b), a.max(b)]
-                .into_iter()
-                .flat_map(L::store)
-                .collect();
+            let mut out: Vec<f32> =
+                [a.plus(b), a.minus(b), a.times(b), a.mul_add(b, c), a.mul_sub(b, c), a.min(b), a.max(b), a.abs()]
+                    .into_iter()
+                    .flat_map(L::store)
+                    .collect();
             out.extend([a.at_most(b), a.below(b)].map(|bits| bits as f32));
             out
         }
@@ -228,7 +240,7 @@ mod tests {
     fn every_level_gives_the_same_on_numbers_that_do_not_round() {
         let expected = dispatch(SimdLevel::Portable, All);
         assert_eq!(expected[..8], [3.0, -4.0, 3.75, 4.0, 15.5, 7.0, 1e30, 14.5]);
-        assert_eq!(expected[56..], [f32::from(0b1001_1011u8), f32::from(0b1001_1001u8)]);
+        assert_eq!(expected[64..], [f32::from(0b1001_1011u8), f32::from(0b1001_1001u8)]);
         for &level in SimdLevel::available() {
             assert_eq!(dispatch(level, All), expected, "{level:?}");
         }
