@@ -1,5 +1,8 @@
-//! What the tests of the whole workspace share, and the measurements behind `cargo xtask verify`.
+//! What the tests of the whole workspace share, and the measurements behind `cargo xtask verify` and `cargo xtask measure`.
 #![forbid(unsafe_code)]
 
+pub mod counting;
 pub mod homework;
+pub mod needs_scenes;
 pub mod rendered;
+pub mod scenes;
