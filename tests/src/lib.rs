@@ -3,6 +3,8 @@
 
 pub mod counting;
 pub mod homework;
+pub mod model;
 pub mod needs_scenes;
+pub mod needs_time;
 pub mod rendered;
 pub mod scenes;
