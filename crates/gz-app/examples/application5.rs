@@ -1,6 +1,7 @@
 //! HW5's application, call by call: `GZ_HW_DATA=... cargo run --release -p gz-app --example application5 [output.ppm]`.
 //!
 //! With the course's data it makes the homework's picture; without, our own teapot and texture stand in for it.
+#![allow(clippy::approx_constant, reason = "the course's directions have four digits")]
 
 use gz_app::display::GzDisplay;
 use gz_app::homework::{GzAttribute, GzRender};

@@ -4,77 +4,25 @@
 //! triangle and stores it, and one more call, [`GzRender::gz_ray_trace`], makes the picture. Token and value lists become
 //! [`GzAttribute`], status codes become errors.
 
+mod attribute;
+
+pub use attribute::{GzAttribute, HomeworkError};
+
 use crate::display::{DisplayPixel, GzDisplay};
 use glam::DVec3;
 use gz_core::{
-    Attributes, BruteForce, CameraError, CameraModel, CameraSpec, GzCamera, GzColor, GzCoord, GzMatrix, GzTextureIndex, GzTri,
-    MatrixStack, StackError, TileGrid, TriBuffer, TriError, TriId, View,
+    Attributes, BruteForce, CameraModel, CameraSpec, GzCamera, GzColor, GzCoord, GzMatrix, GzTextureIndex, GzTri, MatrixStack,
+    TileGrid, TriBuffer, TriId, View,
 };
 use gz_shade::color::{course12_channel, course12_intensity};
 use gz_shade::{
-    Background, FrameStats, GzLight, Interpolate, LightKind, Material, MaterialKind, Scene, SceneNeeds, ShadeRules, Surface,
-    Texture, shade_frame,
+    Background, FrameStats, GzLight, Interpolate, LightKind, Material, Scene, SceneNeeds, ShadeRules, Surface, Texture,
+    shade_frame,
 };
 use std::io::{self, Write};
 
 /// The course's `MAX_LIGHTS`: directional lights beside the ambient one.
 pub const MAX_LIGHTS: usize = 10;
-
-/// What [`GzRender::gz_put_attribute`] sets: a token with its value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum GzAttribute {
-    /// `GZ_RGB_COLOR`: the colour of the triangles that follow, unlit (HW2, HW3) until an interpolation mode is set.
-    RgbColor(GzColor),
-    /// `GZ_INTERPOLATE`: flat, Gouraud (`GZ_COLOR`) or Phong (`GZ_NORMALS`); the triangles that follow are lit.
-    Interpolate(Interpolate),
-    /// `GZ_DIRECTIONAL_LIGHT`: one more light. `direction` points from the surface to the light, in image space, and is used as given.
-    DirectionalLight {
-        /// To the light; neither zero nor NaN.
-        direction: DVec3,
-        /// Its colour.
-        color: GzColor,
-    },
-    /// `GZ_AMBIENT_LIGHT`.
-    AmbientLight(GzColor),
-    /// `GZ_AMBIENT_COEFFICIENT`, Ka.
-    AmbientCoefficient(GzColor),
-    /// `GZ_DIFFUSE_COEFFICIENT`, Kd.
-    DiffuseCoefficient(GzColor),
-    /// `GZ_SPECULAR_COEFFICIENT`, Ks.
-    SpecularCoefficient(GzColor),
-    /// `GZ_DISTRIBUTION_COEFFICIENT`: the specular power, at least 0.
-    DistributionCoefficient(f32),
-    /// `GZ_TEXTURE_MAP`; `None` is the homework's null function.
-    TextureMap(Option<Texture>),
-    /// The paper's own addition, a mark on triangles there (`isMirror`, `isTransparent`): mirror, glass or neither.
-    Kind(MaterialKind),
-}
-
-/// Why one of the homework's calls failed, where the course returned `GZ_FAILURE`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum HomeworkError {
-    /// The camera does not define a view.
-    #[error(transparent)]
-    Camera(#[from] CameraError),
-    /// The matrix stack is full or empty, or the matrix not finite.
-    #[error(transparent)]
-    Stack(#[from] StackError),
-    /// The triangle has a coordinate that is not finite, or there are too many.
-    #[error(transparent)]
-    Triangle(#[from] TriError),
-    /// A call came before `gz_begin_render`.
-    #[error("gz_begin_render has not been called")]
-    NotBegun,
-    /// An eleventh directional light.
-    #[error("more than 10 directional lights")]
-    TooManyLights,
-    /// A light without direction.
-    #[error("a light's direction is zero or not finite")]
-    LightDirection,
-    /// A specular power that is negative or NaN.
-    #[error("the specular power is negative or not a number")]
-    Power,
-}
 
 /// The homework's `GzRender`: display, camera, matrix stack, attributes and, since the paper, the triangle buffer.
 #[derive(Clone, Debug)]
@@ -102,7 +50,7 @@ impl GzRender {
     /// `model` and `rules` say whose renderer it is: [`CameraModel::Homework`] with [`ShadeRules::HOMEWORK`] for HW3 to HW6,
     /// [`CameraModel::Paper`] with [`ShadeRules::PAPER`] for the paper's.
     pub fn new(display: GzDisplay, model: CameraModel, rules: ShadeRules) -> Self {
-        // The course's DEFAULT_IM_X and so on: HOMEWORK's "renderer default".
+        // The course's default camera, that of HW3's and HW4's reference pictures.
         let view = View { position: DVec3::new(-10.0, 5.0, -10.0), look_at: DVec3::ZERO, up: DVec3::Y, fov: 35.0 };
         Self {
             display,
@@ -195,8 +143,7 @@ impl GzRender {
             GzAttribute::DiffuseCoefficient(kd) => self.current.kd = kd,
             GzAttribute::SpecularCoefficient(ks) => self.current.ks = ks,
             GzAttribute::DistributionCoefficient(power) => {
-                // False for NaN.
-                if !(power >= 0.0) {
+                if power < 0.0 || power.is_nan() {
                     return Err(HomeworkError::Power);
                 }
                 self.current.power = power;
@@ -223,7 +170,7 @@ impl GzRender {
     ///
     /// # Errors
     ///
-    /// If rendering was not begun or a coordinate is not finite.
+    /// If rendering was not begun, a coordinate is not finite, or there are too many triangles or materials.
     pub fn gz_put_triangle(
         &mut self,
         positions: [GzCoord; 3],
@@ -237,7 +184,7 @@ impl GzRender {
         let (xnorm, shading) = (self.stack.normal_matrix(), camera.shading_from_world());
         let normal = |n: GzCoord| shading.vector(xnorm.vector(n.as_dvec3())).normalize_or_zero().as_vec3();
 
-        let number = self.material_number();
+        let number = self.material_number()?;
         let tri = GzTri {
             positions: [a, b, c].map(|p| p.as_vec3()),
             normals: normals.map(normal),
@@ -310,89 +257,18 @@ impl GzRender {
         self.textures.len() - 1
     }
 
-    /// The number of the current material, which joins the list when it is new. Beyond 65535 materials the last one is used.
-    fn material_number(&mut self) -> u16 {
+    /// The number of the current material, which joins the list when it is new.
+    fn material_number(&mut self) -> Result<u16, HomeworkError> {
         // Attributes change rarely: the last material is nearly always the right one.
-        let number = match self.materials.iter().rposition(|known| *known == self.current) {
-            Some(number) => number,
-            None if self.materials.len() > usize::from(u16::MAX) => usize::from(u16::MAX),
-            None => {
-                self.materials.push(self.current.clone());
-                self.used.push(0);
-                self.materials.len() - 1
-            }
-        };
-        number as u16
+        let known = self.materials.iter().rposition(|known| *known == self.current);
+        let number = u16::try_from(known.unwrap_or(self.materials.len())).map_err(|_| HomeworkError::TooManyMaterials)?;
+        if known.is_none() {
+            self.materials.push(self.current.clone());
+            self.used.push(0);
+        }
+        Ok(number)
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn renderer() -> GzRender {
-        GzRender::new(GzDisplay::new(8, 8).unwrap(), CameraModel::Homework, ShadeRules::HOMEWORK)
-    }
-
-    fn square(render: &mut GzRender, half: f32) -> [Option<TriId>; 2] {
-        let at = |x: f32, y: f32| GzCoord::new(x * half, y * half, 0.0);
-        let (a, b, c, d) = (at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0));
-        [[a, b, c], [a, c, d]].map(|p| render.gz_put_triangle(p, [GzCoord::NEG_Z; 3], [GzTextureIndex::ZERO; 3]).unwrap())
-    }
-
-    #[test]
-    fn calls_before_begin_render_fail() {
-        let mut render = renderer();
-        let put = render.gz_put_triangle([GzCoord::ZERO; 3], [GzCoord::Z; 3], [GzTextureIndex::ZERO; 3]);
-        assert_eq!(put, Err(HomeworkError::NotBegun));
-        assert_eq!(render.gz_ray_trace().unwrap_err(), HomeworkError::NotBegun);
-        assert_eq!(render.gz_pop_matrix(), Err(HomeworkError::Stack(StackError::Empty)));
-    }
-
-    #[test]
-    fn attributes_that_make_no_sense_are_refused() {
-        let mut render = renderer();
-        let light = |direction| GzAttribute::DirectionalLight { direction, color: GzColor::ONE };
-        assert_eq!(render.gz_put_attribute(light(DVec3::ZERO)), Err(HomeworkError::LightDirection));
-        assert_eq!(render.gz_put_attribute(GzAttribute::DistributionCoefficient(f32::NAN)), Err(HomeworkError::Power));
-        render.gz_put_attributes((0..MAX_LIGHTS).map(|_| light(DVec3::Y))).unwrap();
-        assert_eq!(render.gz_put_attribute(light(DVec3::Y)), Err(HomeworkError::TooManyLights));
-    }
-
-    #[test]
-    fn a_square_in_front_shows_its_colour_over_the_default() {
-        let mut render = renderer();
-        render.gz_put_camera(View { position: DVec3::Z * -4.0, look_at: DVec3::ZERO, up: DVec3::Y, fov: 90.0 });
-        render.gz_default(100, 5000, 16);
-        render.gz_begin_render().unwrap();
-        render.gz_put_attribute(GzAttribute::RgbColor(GzColor::new(1.0, 0.5, 0.0))).unwrap();
-        assert_eq!(square(&mut render, 1.0), [Some(0), Some(1)]);
-        render.gz_ray_trace().unwrap();
-        let of = |i, j| render.display().get(i, j).map(|p| (p.red, p.green, p.blue));
-        assert_eq!(of(4, 4), Some((4095, 2047, 0)));
-        assert_eq!(of(0, 0), Some((100, 4095, 16)));
-        assert_eq!(&render.gz_flush_display_to_framebuffer()[..3], [1, 255, 6]);
-    }
-
-    #[test]
-    fn a_triangle_with_a_corner_behind_the_view_plane_is_dropped() {
-        let mut render = renderer();
-        render.gz_put_camera(View { position: DVec3::Z * -4.0, look_at: DVec3::ZERO, up: DVec3::Y, fov: 90.0 });
-        render.gz_begin_render().unwrap();
-        render.gz_push_matrix(&GzMatrix::translate(DVec3::Z * -5.0)).unwrap();
-        assert_eq!(square(&mut render, 1.0), [None, None]);
-        render.gz_pop_matrix().unwrap();
-        assert_eq!(square(&mut render, 1.0), [Some(0), Some(1)]);
-    }
-
-    #[test]
-    fn materials_are_counted_once_however_often_they_return() {
-        let mut render = renderer();
-        render.gz_begin_render().unwrap();
-        for red in [0.1, 0.9, 0.1] {
-            render.gz_put_attribute(GzAttribute::DiffuseCoefficient(GzColor::X * red)).unwrap();
-            square(&mut render, 0.5);
-        }
-        assert_eq!((render.materials.len(), render.used.clone()), (2, vec![4, 2]));
-    }
-}
+mod tests;

@@ -2,6 +2,7 @@
 
 use super::clip::Reference;
 use super::split::{Bins, CostModel, Cut, groups};
+use super::tight::TightBox;
 use gz_core::{Bounds, GzCoord, TriBuffer, TriId};
 
 /// A node while building: its tight box and two halves, or triangles.
@@ -38,17 +39,44 @@ pub(crate) fn build(tris: &TriBuffer, model: CostModel) -> Cell {
     let depth = 8 + (1.6 * (references.len().max(1) as f32).log2()) as u32;
     // What cutting may add: a fixed multiple of the triangles, shared out among the halves of each cut.
     let room = 4 * references.len() + 64;
-    Builder { positions, model }.cell(references, depth, room)
+    Builder { positions, model }.cell(Part::of(references), depth, room)
+}
+
+/// The references of a cell and the box around them.
+struct Part {
+    references: Vec<Reference>,
+    bounds: Option<TightBox>,
+}
+
+impl Part {
+    fn with_capacity(n: usize) -> Self {
+        Self { references: Vec::with_capacity(n), bounds: None }
+    }
+
+    fn of(references: Vec<Reference>) -> Self {
+        let mut bounds = TightBox::EMPTY;
+        references.iter().for_each(|r| bounds.join(&r.bounds));
+        Self { bounds: (!references.is_empty()).then_some(bounds), references }
+    }
+
+    fn push(&mut self, reference: Reference) {
+        self.bounds.get_or_insert(TightBox::EMPTY).join(&reference.bounds);
+        self.references.push(reference);
+    }
+
+    fn len(&self) -> usize {
+        self.references.len()
+    }
 }
 
 impl Builder<'_> {
-    fn cell(&self, references: Vec<Reference>, depth: u32, room: usize) -> Cell {
-        let bounds = references.iter().fold(Bounds::EMPTY, |all, r| all.union(r.bounds));
-        let cut = if depth == 0 { None } else { self.worthwhile_cut(&references, &bounds) };
-        let Some((lower, upper)) = cut.and_then(|cut| self.part(&references, cut, room)) else {
-            return self.leaf(references, bounds);
+    fn cell(&self, part: Part, depth: u32, room: usize) -> Cell {
+        let cut = if depth == 0 { None } else { self.worthwhile_cut(&part) };
+        let Some((lower, upper)) = cut.and_then(|cut| self.cut(&part.references, cut, room)) else {
+            return leaf(part);
         };
-        drop(references);
+        let bounds = bounds_of(&part);
+        drop(part);
         let grown = lower.len() + upper.len();
         let share = |n: usize| (room as u128 * n as u128 / grown as u128) as usize;
         let (lower_room, upper_room) = (share(lower.len()), share(upper.len()));
@@ -57,70 +85,66 @@ impl Builder<'_> {
     }
 
     /// The cheapest plane, when cutting there is expected to be cheaper than a leaf.
-    fn worthwhile_cut(&self, references: &[Reference], bounds: &Bounds) -> Option<Cut> {
-        if references.len() < 2 {
-            return None;
-        }
-        let cut = bin(references, bounds).cheapest(bounds, &self.model)?;
-        let leaf = bounds.area() * groups(references.len() as u32);
-        (cut.cost < leaf).then_some(cut)
+    fn worthwhile_cut(&self, part: &Part) -> Option<Cut> {
+        let bounds = part.bounds.as_ref().filter(|_| part.len() > 1)?;
+        let cut = bin(&part.references, bounds).cheapest(bounds, &self.model)?;
+        (cut.cost < bounds.area() * groups(part.len() as u32)).then_some(cut)
     }
 
     /// The references below and above the plane, those that cross it in both; `None` when the cut parts nothing or makes more
     /// references than there is room for.
-    fn part(&self, references: &[Reference], cut: Cut, room: usize) -> Option<(Vec<Reference>, Vec<Reference>)> {
+    fn cut(&self, references: &[Reference], cut: Cut, room: usize) -> Option<(Part, Part)> {
         let Cut { axis, plane, .. } = cut;
-        let crossing = |r: &Reference| r.bounds.min[axis] < plane && r.bounds.max[axis] > plane;
-        let is_lower = |r: &Reference| r.bounds.max[axis] <= plane;
-        let both = references.iter().filter(|r| crossing(r)).count();
-        let below = references.iter().filter(|r| is_lower(r)).count() + both;
-        let above = references.len() - below + both;
+        let is_lower = |r: &Reference| r.bounds.max(axis) <= plane;
+        let is_upper = |r: &Reference| r.bounds.min(axis) >= plane;
+        let (mut below, mut above) = (0, 0);
+        for r in references {
+            let lower = is_lower(r);
+            below += usize::from(lower || !is_upper(r));
+            above += usize::from(!lower);
+        }
         // Each cut makes both halves smaller or uses up room, so cutting ends.
         if below + above == 2 * references.len() || below + above > room {
             return None;
         }
-        let (mut lower, mut upper) = (Vec::with_capacity(below), Vec::with_capacity(above));
+        let (mut lower, mut upper) = (Part::with_capacity(below), Part::with_capacity(above));
         for r in references {
-            if crossing(r) {
-                let [l, u] = r.split(axis, plane, &self.positions[r.tri as usize]);
-                // A box that was cut before may reach over the plane where the triangle itself does not.
-                if !l.bounds.is_empty() {
-                    lower.push(l);
-                }
-                if !u.bounds.is_empty() {
-                    upper.push(u);
-                }
-            } else if is_lower(r) {
+            if is_lower(r) {
                 lower.push(*r);
-            } else {
+            } else if is_upper(r) {
                 upper.push(*r);
+            } else {
+                let [l, u] = r.split(axis, plane, &self.positions[r.tri as usize]);
+                l.into_iter().for_each(|l| lower.push(l));
+                u.into_iter().for_each(|u| upper.push(u));
             }
         }
-        (!lower.is_empty() && !upper.is_empty()).then_some((lower, upper))
+        (lower.len() > 0 && upper.len() > 0).then_some((lower, upper))
     }
+}
 
-    /// A leaf, or halves of it where it would be too large: triangles that no plane parts are parted by the places of their middles.
-    fn leaf(&self, mut references: Vec<Reference>, bounds: Bounds) -> Cell {
-        if references.len() <= LARGEST_LEAF {
-            return Cell { bounds, content: Content::Leaf(references.iter().map(|r| r.tri).collect()) };
-        }
-        let middles = Bounds::of(references.iter().map(|r| r.bounds.centre()));
-        let axis = middles.size().max_position();
-        let place = |r: &Reference| (r.bounds.centre()[axis], r.tri);
-        // Whole groups in the lower half, so that only the last is part-filled.
-        let middle = (references.len() / 2).next_multiple_of(8);
-        references.select_nth_unstable_by(middle, |a, b| {
-            let ((a, a_tri), (b, b_tri)) = (place(a), place(b));
-            a.total_cmp(&b).then(a_tri.cmp(&b_tri))
-        });
-        let upper = references.split_off(middle);
-        let halves = [references, upper].map(|mut half| {
-            half.sort_unstable_by_key(|r| r.tri);
-            let bounds = half.iter().fold(Bounds::EMPTY, |all, r| all.union(r.bounds));
-            self.leaf(half, bounds)
-        });
-        Cell { bounds, content: Content::Halves(Box::new(halves)) }
+fn bounds_of(part: &Part) -> Bounds {
+    part.bounds.map_or(Bounds::EMPTY, |bounds| bounds.bounds())
+}
+
+/// A leaf, or halves of it where it would be too large: triangles that no plane parts are parted by the places of their middles.
+fn leaf(part: Part) -> Cell {
+    let bounds = bounds_of(&part);
+    let mut references = part.references;
+    if references.len() <= LARGEST_LEAF {
+        return Cell { bounds, content: Content::Leaf(references.iter().map(|r| r.tri).collect()) };
     }
+    let middle_of = |r: &Reference| r.bounds.bounds().centre();
+    let axis = Bounds::of(references.iter().map(middle_of)).size().max_position();
+    // Whole groups in the lower half, so that only the last is part-filled.
+    let middle = (references.len() / 2).next_multiple_of(8);
+    references.select_nth_unstable_by(middle, |a, b| middle_of(a)[axis].total_cmp(&middle_of(b)[axis]).then(a.tri.cmp(&b.tri)));
+    let upper = references.split_off(middle);
+    let halves = [references, upper].map(|mut half| {
+        half.sort_unstable_by_key(|r| r.tri);
+        leaf(Part::of(half))
+    });
+    Cell { bounds, content: Content::Halves(Box::new(halves)) }
 }
 
 #[cfg(feature = "rayon")]
@@ -137,7 +161,7 @@ fn join(_size: usize, a: impl FnOnce() -> Cell, b: impl FnOnce() -> Cell) -> [Ce
     [a(), b()]
 }
 
-fn bin(references: &[Reference], bounds: &Bounds) -> Bins {
+fn bin(references: &[Reference], bounds: &TightBox) -> Bins {
     let some = |part: &[Reference]| {
         let mut bins = Bins::over(bounds, references.len());
         part.iter().for_each(|r| bins.add(r));

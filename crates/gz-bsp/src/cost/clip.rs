@@ -1,34 +1,35 @@
 //! Triangles as a builder sees them: a number and the box of the part that lies in a cell.
 
+use super::tight::TightBox;
 use glam::{DVec3, Vec3};
 use gz_core::{Bounds, TriId};
 
 /// A triangle's part in a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Reference {
-    pub(crate) tri: TriId,
     /// A box around the part, never too small.
-    pub(crate) bounds: Bounds,
+    pub(crate) bounds: TightBox,
+    pub(crate) tri: TriId,
 }
 
 impl Reference {
     /// The whole triangle.
     pub(crate) fn whole(tri: TriId, corners: &[Vec3; 3]) -> Self {
-        Self { tri, bounds: Bounds::of(*corners) }
+        Self { tri, bounds: TightBox::of(&Bounds::of(*corners)) }
     }
 
-    /// The parts below and above `axis = plane`, for a part that crosses the plane: boxes around the corners of each side and the points
-    /// where edges cross, cut with the box before.
-    pub(crate) fn split(&self, axis: usize, plane: f32, corners: &[Vec3; 3]) -> [Self; 2] {
+    /// The parts below and above `axis = plane`, for a part whose box crosses the plane: boxes around the corners of each side and the
+    /// points where edges cross, cut with the box before. `None` for a side on which the earlier cuts have left nothing.
+    pub(crate) fn split(&self, axis: usize, plane: f32, corners: &[Vec3; 3]) -> [Option<Self>; 2] {
         let mut sides = [Bounds::EMPTY; 2];
         let p = f64::from(plane);
         for k in 0..3 {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
-            for (side, bounds) in sides.iter_mut().enumerate() {
-                let inside = if side == 0 { a[axis] <= plane } else { a[axis] >= plane };
-                if inside {
-                    *bounds = bounds.grown_by(a);
-                }
+            if a[axis] <= plane {
+                sides[0] = sides[0].grown_by(a);
+            }
+            if a[axis] >= plane {
+                sides[1] = sides[1].grown_by(a);
             }
             if (a[axis] < plane && b[axis] > plane) || (a[axis] > plane && b[axis] < plane) {
                 let (a, b) = (a.as_dvec3(), b.as_dvec3());
@@ -39,11 +40,11 @@ impl Reference {
                 sides = sides.map(|s| s.grown_by(low).grown_by(high));
             }
         }
-        let [mut lower, mut upper] = sides.map(|s| Bounds { min: s.min.max(self.bounds.min), max: s.max.min(self.bounds.max) });
+        let before = self.bounds.bounds();
+        let [mut lower, mut upper] = sides.map(|s| Bounds { min: s.min.max(before.min), max: s.max.min(before.max) });
         lower.max[axis] = lower.max[axis].min(plane);
         upper.min[axis] = upper.min[axis].max(plane);
-        // A part that is empty after all, because the box before had cut it off, keeps a box on its side rather than none.
-        [lower, upper].map(|bounds| Self { tri: self.tri, bounds })
+        [lower, upper].map(|part| (!part.is_empty()).then(|| Self { tri: self.tri, bounds: TightBox::of(&part) }))
     }
 }
 
@@ -67,17 +68,27 @@ mod tests {
         let corners = [[0.0, 0.0, 0.0], [3.0, 0.1, 7.0], [0.7, 5.0, -2.0]].map(Vec3::from_array);
         let whole = Reference::whole(0, &corners);
         for (axis, plane) in [(0, 1.0), (1, 0.05), (2, 0.3), (2, -1.9)] {
-            let [lower, upper] = whole.split(axis, plane, &corners);
-            assert!(lower.bounds.max[axis] <= plane && upper.bounds.min[axis] >= plane);
+            let [lower, upper] = whole.split(axis, plane, &corners).map(|part| part.unwrap().bounds.bounds());
+            assert!(lower.max[axis] <= plane && upper.min[axis] >= plane);
             for k in 0..400 {
                 let (u, v) = ((k % 20) as f32 / 19.0, (k / 20) as f32 / 19.0);
                 let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
                 let p = corners[0] + (corners[1] - corners[0]) * u + (corners[2] - corners[0]) * v;
                 let part = if p[axis] <= plane { lower } else { upper };
                 let slack = Vec3::splat(1e-6);
-                assert!(Bounds { min: part.bounds.min - slack, max: part.bounds.max + slack }.holds(p), "{axis} {plane} {p}");
+                assert!(Bounds { min: part.min - slack, max: part.max + slack }.holds(p), "{axis} {plane} {p}");
             }
-            assert!(lower.bounds.area() < whole.bounds.area() && upper.bounds.area() < whole.bounds.area());
+            assert!(lower.area() < whole.bounds.area() && upper.area() < whole.bounds.area());
         }
+    }
+
+    #[test]
+    fn a_part_that_earlier_cuts_removed_is_none() {
+        let corners = [[0.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 0.1, 0.0]].map(Vec3::from_array);
+        // The upper part begins at y = 2, so below x = 1 there is nothing left of it.
+        let [_, upper] = Reference::whole(0, &corners).split(1, 2.0, &corners);
+        let upper = upper.unwrap();
+        let [lower, _] = upper.split(0, 1.0, &corners);
+        assert!(lower.is_none());
     }
 }

@@ -9,6 +9,7 @@ mod check;
 mod clip;
 mod split;
 mod stats;
+mod tight;
 mod walk;
 mod wide;
 

@@ -1,7 +1,7 @@
 //! Where to cut: the plane of least expected cost.
 
 use super::clip::Reference;
-use gz_core::Bounds;
+use super::tight::TightBox;
 
 /// What the steps of a walk cost, in units of one group of eight triangles tested.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct CostModel {
 impl Default for CostModel {
     /// Measured on the eight-cell walk.
     fn default() -> Self {
-        Self { cut: 0.3 }
+        Self { cut: 0.8 }
     }
 }
 
@@ -25,18 +25,40 @@ pub(crate) struct Cut {
     pub(crate) cost: f32,
 }
 
-/// Bins along each axis; fewer for few triangles.
+/// Bins along each axis for many triangles; for fewer they are not worth their sweep.
 const MOST_BINS: usize = 32;
+
+fn bins_for(triangles: usize) -> usize {
+    match triangles {
+        0..32 => 8,
+        32..256 => 16,
+        _ => MOST_BINS,
+    }
+}
 
 /// What falls into one bin.
 #[derive(Clone, Copy)]
 struct Bin {
     begin: u32,
     end: u32,
-    bounds: Bounds,
+    /// Around all parts in the bin; along the bin's axis of those only that lie in it whole.
+    bounds: TightBox,
+    /// Along the bin's axis, of the parts that reach into other bins. Kept apart, as changing one number of a box that is worked on as a
+    /// whole makes the processor wait.
+    low: f32,
+    high: f32,
 }
 
-const EMPTY_BIN: Bin = Bin { begin: 0, end: 0, bounds: Bounds::EMPTY };
+const EMPTY_BIN: Bin = Bin { begin: 0, end: 0, bounds: TightBox::EMPTY, low: f32::INFINITY, high: f32::NEG_INFINITY };
+
+impl Bin {
+    /// Around all parts in the bin.
+    fn whole(&self, axis: usize) -> TightBox {
+        let mut bounds = self.bounds;
+        bounds.reach(axis, self.low, self.high);
+        bounds
+    }
+}
 
 /// Bins of all three axes over one box.
 pub(crate) struct Bins {
@@ -49,14 +71,15 @@ pub(crate) struct Bins {
 }
 
 impl Bins {
-    pub(crate) fn over(bounds: &Bounds, triangles: usize) -> Self {
-        let count = if triangles < 32 { 16 } else { MOST_BINS };
-        let size = bounds.max - bounds.min;
-        let usable = size.to_array().map(|s| s > 0.0 && s.is_finite());
-        let width: [f32; 3] = std::array::from_fn(|k| if usable[k] { size[k] / count as f32 } else { 0.0 });
+    pub(crate) fn over(bounds: &TightBox, triangles: usize) -> Self {
+        let count = bins_for(triangles);
+        let width: [f32; 3] = std::array::from_fn(|axis| {
+            let width = (bounds.max(axis) - bounds.min(axis)) / count as f32;
+            if width > 0.0 && width.is_finite() && (1.0 / width).is_finite() { width } else { 0.0 }
+        });
         Self {
-            origin: bounds.min.to_array(),
-            scale: width.map(|w| if w > 0.0 && (1.0 / w).is_finite() { 1.0 / w } else { 0.0 }),
+            origin: std::array::from_fn(|axis| bounds.min(axis)),
+            scale: width.map(|w| if w > 0.0 { 1.0 / w } else { 0.0 }),
             width,
             count,
             bins: [[EMPTY_BIN; MOST_BINS]; 3],
@@ -69,30 +92,29 @@ impl Bins {
 
     /// The bin of a coordinate; rounding may give its neighbour, which only blurs an estimate.
     fn bin(&self, axis: usize, x: f32) -> usize {
-        // Casting saturates, also from below and from NaN.
+        // The cast saturates, also from below.
         (((x - self.origin[axis]) * self.scale[axis]) as usize).min(self.count - 1)
     }
 
     pub(crate) fn add(&mut self, reference: &Reference) {
         let bounds = &reference.bounds;
         for axis in 0..3 {
-            if self.scale[axis] == 0.0 {
-                continue;
-            }
-            let (first, last) = (self.bin(axis, bounds.min[axis]), self.bin(axis, bounds.max[axis]));
+            let (first, last) = (self.bin(axis, bounds.min(axis)), self.bin(axis, bounds.max(axis)));
             self.bins[axis][first].begin += 1;
             self.bins[axis][last].end += 1;
             if first == last {
-                let bin = &mut self.bins[axis][first];
-                bin.bounds = bin.bounds.union(*bounds);
+                self.bins[axis][first].bounds.join(bounds);
                 continue;
             }
+            let across = bounds.across(axis);
+            let (mut low, last_high) = (bounds.min(axis), bounds.max(axis));
             for k in first..=last {
-                let mut part = *bounds;
-                part.min[axis] = part.min[axis].max(self.plane(axis, k));
-                part.max[axis] = part.max[axis].min(self.plane(axis, k + 1));
+                let end = self.plane(axis, k + 1);
                 let bin = &mut self.bins[axis][k];
-                bin.bounds = bin.bounds.union(part);
+                bin.bounds.join(&across);
+                bin.low = bin.low.min(low);
+                bin.high = bin.high.max(if k == last { last_high } else { end });
+                low = end;
             }
         }
     }
@@ -102,12 +124,14 @@ impl Bins {
         for (mine, theirs) in self.bins.iter_mut().flatten().zip(other.bins.iter().flatten()) {
             mine.begin += theirs.begin;
             mine.end += theirs.end;
-            mine.bounds = mine.bounds.union(theirs.bounds);
+            mine.bounds.join(&theirs.bounds);
+            mine.low = mine.low.min(theirs.low);
+            mine.high = mine.high.max(theirs.high);
         }
     }
 
-    /// The cheapest plane, its cost relative to the area of `bounds`; `None` when no plane parts anything.
-    pub(crate) fn cheapest(&self, bounds: &Bounds, model: &CostModel) -> Option<Cut> {
+    /// The cheapest plane; `None` when no plane parts anything. Costs are areas times groups.
+    pub(crate) fn cheapest(&self, bounds: &TightBox, model: &CostModel) -> Option<Cut> {
         let mut best: Option<Cut> = None;
         let whole = bounds.area();
         for axis in 0..3 {
@@ -115,23 +139,23 @@ impl Bins {
                 continue;
             }
             let bins = &self.bins[axis][..self.count];
-            // Boxes and counts of everything from a bin upwards.
-            let mut above = [(0u32, Bounds::EMPTY); MOST_BINS];
-            let (mut count, mut union) = (0, Bounds::EMPTY);
+            // What lies above the lower end of each bin.
+            let mut above = [(0, 0.0); MOST_BINS];
+            let (mut count, mut union) = (0, TightBox::EMPTY);
             for k in (1..self.count).rev() {
                 count += bins[k].end;
-                union = union.union(bins[k].bounds);
-                above[k] = (count, union);
+                union.join(&bins[k].whole(axis));
+                above[k] = (count, union.area() * groups(count));
             }
-            let (mut below, mut union) = (0, Bounds::EMPTY);
+            let (mut below, mut union) = (0, TightBox::EMPTY);
             for k in 1..self.count {
                 below += bins[k - 1].begin;
-                union = union.union(bins[k - 1].bounds);
-                let (upper_count, upper) = above[k];
-                if below == 0 || upper_count == 0 {
+                union.join(&bins[k - 1].whole(axis));
+                let (above, upper_cost) = above[k];
+                if below == 0 || above == 0 {
                     continue;
                 }
-                let cost = model.cut * whole + union.area() * groups(below) + upper.area() * groups(upper_count);
+                let cost = model.cut * whole + union.area() * groups(below) + upper_cost;
                 if best.is_none_or(|best| cost < best.cost) {
                     best = Some(Cut { axis, plane: self.plane(axis, k), cost });
                 }
@@ -142,8 +166,6 @@ impl Bins {
 }
 
 /// Groups of eight that hold `n` triangles: what a leaf costs.
-///
-/// Part groups are priced between their share and a whole one, as deeper cuts will fill them differently.
 pub(crate) fn groups(n: u32) -> f32 {
-    if n <= 8 { 1.0 } else { n as f32 / 8.0 + 0.5 }
+    n.div_ceil(8) as f32
 }
