@@ -82,6 +82,11 @@ pub fn plain() -> String {
     Added { teapot: FLAT, ..Added::default() }.toml()
 }
 
+/// The scene that needs nothing, with a teapot of 230 thousand triangles.
+pub fn plain_and_large() -> String {
+    plain().replace("segments = 3", "segments = 60")
+}
+
 /// The scenes, in the order of the fields of [`gz_shade::SceneNeeds`].
 pub fn all() -> Vec<NeedScene> {
     let scene = |need, attributes, added: Added| NeedScene { need, also: None, toml: added.toml(), attributes, rays: None };

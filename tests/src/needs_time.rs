@@ -1,11 +1,11 @@
 //! What computed needs save over all needs, on this machine.
 
-use crate::rendered::scene_path;
 use crate::scenes;
 use gz_app::error::LoadError;
 use gz_app::load::{self, Overrides};
 use gz_bsp::BspTree;
 use gz_shade::SceneNeeds;
+use std::path::Path;
 use std::time::Instant;
 
 /// A scene with computed needs and with all.
@@ -37,8 +37,8 @@ struct Run {
     rays: u64,
 }
 
-fn run(name: &str, overrides: &Overrides, needs: Option<SceneNeeds>) -> Result<Run, LoadError> {
-    let draft = load::scene(&scene_path(name), overrides)?;
+fn run(path: &Path, overrides: &Overrides, needs: Option<SceneNeeds>) -> Result<Run, LoadError> {
+    let draft = load::scene(path, overrides)?;
     let needs = needs.unwrap_or_else(|| SceneNeeds::of(&draft.scene));
     let start = Instant::now();
     let scene = draft.place(needs)?;
@@ -54,17 +54,26 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Measures one scene of `assets/scenes`, both ways in turn, `runs` times after one that does not count.
+/// Measures one scene file, both ways in turn, `runs` times after one that does not count.
 ///
 /// # Errors
 ///
 /// If the scene cannot be loaded.
-pub fn saving(name: &str, runs: usize) -> Result<Saving, LoadError> {
+pub fn saving(path: &Path, runs: usize) -> Result<Saving, LoadError> {
     let overrides = Overrides { size: Some((320, 240)), ..Overrides::default() };
-    let needs = SceneNeeds::reasons(&load::scene(&scene_path(name), &overrides)?.scene);
+    let needs = SceneNeeds::reasons(&load::scene(path, &overrides)?.scene);
     let (mut place, mut shade, mut whole, mut last) = (Vec::new(), Vec::new(), Vec::new(), ([0; 2], [0; 2]));
     for k in 0..=runs {
-        let (computed, all) = (run(name, &overrides, None)?, run(name, &overrides, Some(SceneNeeds::ALL))?);
+        let all = || run(path, &overrides, Some(SceneNeeds::ALL));
+        let computed = || run(path, &overrides, None);
+        // Now one, now the other is first.
+        let (computed, all) = if k % 2 == 0 {
+            let first = computed()?;
+            (first, all()?)
+        } else {
+            let first = all()?;
+            (computed()?, first)
+        };
         last = ([computed.bytes, all.bytes], [computed.rays, all.rays]);
         if k > 0 {
             place.push(computed.place / all.place);
@@ -74,7 +83,7 @@ pub fn saving(name: &str, runs: usize) -> Result<Saving, LoadError> {
     }
     let spread = [whole.iter().copied().fold(f64::INFINITY, f64::min), whole.iter().copied().fold(0.0, f64::max)];
     Ok(Saving {
-        name: name.to_owned(),
+        name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         needs: needs.iter().filter(|need| need.because.is_some()).count(),
         bytes: last.0,
         rays: last.1,

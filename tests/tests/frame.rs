@@ -11,9 +11,10 @@ use gz_tests::scenes;
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 72;
 
-/// One sample a pixel: further ones only repeat the work.
-const SMALL: Overrides =
-    Overrides { size: Some((WIDTH, HEIGHT)), camera: None, depth: None, aa: Some(Antialias::None), fresnel: None };
+/// A picture of this size with one sample a pixel: further ones only repeat the work.
+const fn sized(width: u32, height: u32) -> Overrides {
+    Overrides { size: Some((width, height)), camera: None, depth: None, aa: Some(Antialias::None), fresnel: None }
+}
 
 const WHOLE: Tile = Tile { x0: 0, y0: 0, x1: WIDTH, y1: HEIGHT };
 
@@ -54,7 +55,7 @@ fn with_threads(count: usize, work: impl FnOnce() -> Bits + Send) -> Bits {
 #[test]
 fn threads_tiles_and_crops_cannot_be_seen_on_any_scene() {
     for name in scenes::usable() {
-        let (scene, needs) = scenes::placed(&name, &SMALL);
+        let (scene, needs) = scenes::placed(&name, &sized(WIDTH, HEIGHT));
         let tree = BspTree::build(&scene.tris);
         let reference = with_threads(1, || bits(&scene, needs, &tree, WHOLE, 64));
         let hit = reference.stats.primary_hits;
@@ -74,19 +75,21 @@ fn threads_tiles_and_crops_cannot_be_seen_on_any_scene() {
 
 #[test]
 fn brute_force_and_both_trees_give_the_same_bits_on_every_scene() {
+    // Smaller still: brute force goes through all triangles for every ray.
+    const PICTURE: Tile = Tile { x0: 0, y0: 0, x1: 56, y1: 42 };
     for name in scenes::usable() {
-        let (scene, needs) = scenes::placed(&name, &SMALL);
-        let brute = |level| bits(&scene, needs, &BruteForce::new(&scene.tris).with_simd(level), WHOLE, 32);
+        let (scene, needs) = scenes::placed(&name, &sized(PICTURE.x1, PICTURE.y1));
+        let brute = |level| bits(&scene, needs, &BruteForce::new(&scene.tris).with_simd(level), PICTURE, 32);
         let reference = brute(SimdLevel::Portable);
         for &level in SimdLevel::available() {
             assert!(level == SimdLevel::Portable || brute(level) == reference, "{name}: brute force by {level:?}");
             let tree = BspTree::build(&scene.tris).with_simd(level);
-            assert!(bits(&scene, needs, &tree, WHOLE, 32) == reference, "{name}: the tree by {level:?}");
+            assert!(bits(&scene, needs, &tree, PICTURE, 32) == reference, "{name}: the tree by {level:?}");
         }
         for (max_depth, min_size) in [(15, 10), (5, 3)] {
             let params = Midpoint { max_depth, min_size, ..Midpoint::default() };
             let tree = MidpointTree::build(&scene.tris, params).unwrap_or_else(|error| panic!("{name}: {error}"));
-            assert!(bits(&scene, needs, &tree, WHOLE, 32) == reference, "{name}: the paper's tree {max_depth}, {min_size}");
+            assert!(bits(&scene, needs, &tree, PICTURE, 32) == reference, "{name}: the paper's tree {max_depth}, {min_size}");
         }
     }
 }

@@ -1,7 +1,8 @@
 //! `cargo xtask measure`: figures that the documentation holds, and figures of this machine.
 #![forbid(unsafe_code)]
 
-use gz_tests::{model, needs_time, scenes};
+use gz_tests::rendered::scene_path;
+use gz_tests::{model, needs_scenes, needs_time, scenes};
 use std::process::ExitCode;
 
 /// Why a measurement ended badly, and the exit code that says so.
@@ -65,12 +66,18 @@ fn measure_needs() -> Result<(), Failure> {
     const RUNS: usize = 7;
     println!("computed needs over all needs, 320x240, both in turn, median of {RUNS} runs; below 1 is time saved");
     println!("scene               needs  bytes/triangle  rays                 place  shade  whole, least to greatest");
-    for name in scenes::usable() {
-        let it = needs_time::saving(&name, RUNS).map_err(|error| Failure(error.to_string(), 3))?;
+    let folder = std::env::temp_dir().join(format!("gz-measure-{}", std::process::id()));
+    let large = needs_scenes::write(&folder, "nothing, 230 k", &needs_scenes::plain_and_large())
+        .map_err(|error| Failure(format!("{}: {error}", folder.display()), 1))?;
+    let names = scenes::usable();
+    for path in names.iter().map(|name| scene_path(name)).chain([large]) {
+        let it = needs_time::saving(&path, RUNS).map_err(|error| Failure(error.to_string(), 3))?;
         println!(
             "{:<18}  {:>2}/10  {:>3} of {:<7}  {:>9}/{:<9}  {:>5.2}  {:>5.2}  {:.2} to {:.2}",
             it.name, it.needs, it.bytes[0], it.bytes[1], it.rays[0], it.rays[1], it.place, it.shade, it.spread[0], it.spread[1]
         );
     }
+    // What is left in the temporary folder harms nobody.
+    let _ = std::fs::remove_dir_all(&folder);
     Ok(())
 }

