@@ -1,5 +1,10 @@
-//! What the tests of the whole workspace share, and the measurements behind `cargo xtask verify`.
+//! What the tests of the whole workspace share, and the measurements behind `cargo xtask verify` and `cargo xtask measure`.
 #![forbid(unsafe_code)]
 
+pub mod counting;
 pub mod homework;
+pub mod model;
+pub mod needs_scenes;
+pub mod needs_time;
 pub mod rendered;
+pub mod scenes;

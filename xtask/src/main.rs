@@ -5,6 +5,7 @@
 
 mod ci;
 mod golden;
+mod measure;
 mod render;
 mod verify;
 
@@ -25,7 +26,7 @@ struct Failure {
     code: u8,
 }
 
-const TASKS: [Task; 4] = [
+const TASKS: [Task; 5] = [
     Task {
         name: "render",
         takes: "[NAME|FILE|all] [gz options]",
@@ -43,6 +44,12 @@ const TASKS: [Task; 4] = [
         takes: "homework [options]",
         does: "compare with the course's reference pictures (needs GZ_HW_DATA)",
         run: verify::run,
+    },
+    Task {
+        name: "measure",
+        takes: "model [--write|--check] | needs",
+        does: "what approximations cost, for docs/MODEL.md; what computed needs save",
+        run: measure::run,
     },
     Task { name: "ci", takes: "", does: "format, clippy, docs and tests: what has to pass before a push", run: ci::run },
 ];
