@@ -35,12 +35,12 @@ pub fn leave_surface(corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoo
     let [a, b, c] = corners.map(|p| p.as_dvec3());
     let normal = (b - a).cross(c - a);
     let combine = |w: [f64; 3]| a * w[0] + b * w[1] + c * w[2];
-    let mut point = combine(pulled_in(corners, weights, combine(weights).abs().max_element(), normal.length()));
+    let corner_reach = corners.iter().fold(0f32, |reach, p| reach.max(p.abs().max_element()));
+    let mut point = combine(pulled_in(corners, weights, f64::from(corner_reach), normal.length()));
 
     // A step of u times the largest coordinate is one rounding of the point; the point's own coordinate may be near 0, where its ulp
     // would never get away. Steps double, so that the end is certain.
     let (axis, towards) = way_out(corners, normal, side)?;
-    let corner_reach = corners.iter().fold(0f32, |reach, p| reach.max(p.abs().max_element()));
     let mut step = U * point.abs().max_element().max(f64::from(corner_reach) * LEAST_SHARE);
     point = without_tiny(point);
     while !is_beyond(corners, point, side) {
@@ -65,6 +65,9 @@ fn way_out(corners: &[GzCoord; 3], normal: DVec3, side: i8) -> Option<(usize, f6
 }
 
 /// The weights moved at least a few roundings of the point away from each edge.
+///
+/// `reach` is the greatest coordinate of the corners: the sum that forms the point rounds in units of its largest addend, also where the
+/// point itself is near the origin of space.
 fn pulled_in(corners: &[GzCoord; 3], weights: [f64; 3], reach: f64, double_area: f64) -> [f64; 3] {
     let [a, b, c] = corners.map(|p| p.as_dvec3());
     // The height over an edge is twice the area by its length; a weight of 1 is the whole height.
@@ -141,6 +144,34 @@ mod tests {
             }
         }
         assert!(count > 5900, "{count} of 6000 rays left");
+    }
+
+    #[test]
+    fn rays_from_the_edge_of_a_needle_do_not_slip_past_a_wall_on_that_edge() {
+        // The edge runs through the origin of space, where a point is small and its rounding is not.
+        let mut count = 0;
+        for (half, height) in [(1.0, 1e-3), (40.0, 1e-2), (40.0, 1e-4), (1000.0, 1.0), (1000.0, 1e-2)] {
+            let (a, b) = (GzCoord::new(-half, -0.3 * half, 0.7 * half), GzCoord::new(half, 0.3 * half, -0.7 * half));
+            let across = (b - a).cross(GzCoord::new(0.2, 1.0, 0.1)).normalize();
+            let up = across.cross(b - a).normalize();
+            let c = (a + b) * 0.5 + across * height;
+            let needle = [a, b, c];
+            // A wall that stands on the very edge.
+            let wall = [a, b, (a + b) * 0.5 + up * half];
+            let tris = TriBuffer::from_indexed(&[needle, wall].concat(), &[[0, 1, 2], [3, 4, 5]]).unwrap();
+            let brute = BruteForce::new(&tris);
+            for k in 0..4000 {
+                let s = 0.05 + 0.9 * f64::from(k) / 4000.0;
+                for weight in [0.0, 1e-15, 1e-13] {
+                    let weights = [s * (1.0 - weight), (1.0 - s) * (1.0 - weight), weight];
+                    let direction = (up * 1e-3 - across).normalize();
+                    let origin = leave_surface(&needle, weights, direction).unwrap();
+                    assert!(brute.any_hit(&GzRay::from_f64(origin, direction)), "{half} {height} {k} {weight}");
+                    count += 1;
+                }
+            }
+        }
+        assert_eq!(count, 60_000);
     }
 
     #[test]
