@@ -228,3 +228,26 @@ fn a_ray_visits_few_cells() {
     );
     assert!(visits.nodes < 60 * n as u64 && visits.groups < 60 * n as u64 && visits.tests < 20 * n as u64, "{visits:?}");
 }
+
+#[test]
+fn a_scene_that_is_long_in_one_direction_is_not_walked_whole() {
+    // As in screen space, where z runs to 2^31 and x and y over a picture.
+    let mut lcg = Lcg(9);
+    let base = soup(&mut lcg, 20_000, 0.02);
+    let stretch = GzCoord::new(256.0, 256.0, 2e9);
+    let tris = buffer(base.positions().iter().map(|t| t.map(|p| p * stretch)));
+    let tree = BspTree::build(&tris);
+    let brute = BruteForce::new(&tris);
+    let mut visits = VisitCount::default();
+    let n = 400;
+    for k in 0..n {
+        let origin = GzCoord::new((k % 20) as f32 * 12.0, (k / 20) as f32 * 12.0, 0.0);
+        let ray = GzRay::new(origin, GzCoord::Z);
+        let hit = tree.closest_hit_counted(&ray, ClassMask::ALL, &mut visits);
+        if k % 20 == 0 {
+            assert_eq!(hit, brute.closest_hit(&ray));
+        }
+    }
+    println!("{visits:?} for {n} rays");
+    assert!(visits.groups < 60 * n && visits.tests < 20 * n, "{visits:?}");
+}

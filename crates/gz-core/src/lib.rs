@@ -21,6 +21,7 @@
 mod bounds;
 mod brute;
 mod camera;
+mod camera_spec;
 mod coord;
 mod hit;
 pub mod kernel;
@@ -36,7 +37,8 @@ mod tri;
 
 pub use bounds::Bounds;
 pub use brute::BruteForce;
-pub use camera::{CameraError, CameraModel, CameraSpec, GzCamera, PrimaryRays, View};
+pub use camera::{GzCamera, PrimaryRays};
+pub use camera_spec::{CameraError, CameraModel, CameraSpec, View};
 pub use coord::{GzColor, GzCoord, GzTextureIndex};
 pub use glam;
 pub use hit::{Hit, NO_TRI, TriId};

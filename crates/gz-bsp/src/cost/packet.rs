@@ -2,8 +2,9 @@
 //!
 //! A node's eight cells are first held against the interval that all sixteen rays span, then each cell that this leaves against the
 //! rays one by one; the rays that cross it go on with it as a mask. Leaves are asked ray by ray, eight triangles at a time. Entries and
-//! exits are computed as in `walk.rs`, with the same constants, so what is said there of lost hits holds ray by ray. The interval of a
-//! product is that of its ends, rounding is monotone, so the interval's entry is at most that of any ray and its exit at least.
+//! exits are computed as in `walk.rs`, with the same constants, so what is said there of lost hits holds ray by ray. For the interval,
+//! rounding is monotone: its entry, rounded twice, is at most what any ray's would be if rounded twice, and that is at most the true one; so
+//! with its exit.
 
 use super::walk::{Quest, Slabs};
 use super::wide::{BspTree, Child, Target, WideNode};

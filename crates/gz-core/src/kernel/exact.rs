@@ -1,6 +1,7 @@
 //! The exact stage: ray against triangle without any rounding.
 
-use super::dyadic::{Dyadic, quotient_f32, quotient_near};
+use super::dyadic::Dyadic;
+use super::quotient::{quotient_f32, quotient_near};
 use crate::{GzCoord, GzRay};
 use std::cmp::Ordering;
 

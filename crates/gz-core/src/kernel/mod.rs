@@ -7,6 +7,7 @@ pub(crate) mod filter;
 mod group;
 mod order;
 mod plane;
+mod quotient;
 
 pub use certify::hit_weights;
 pub(crate) use exact::side_sign;
