@@ -249,5 +249,6 @@ fn a_scene_that_is_long_in_one_direction_is_not_walked_whole() {
         }
     }
     println!("{visits:?} for {n} rays");
-    assert!(visits.groups < 60 * n && visits.tests < 20 * n, "{visits:?}");
+    // Cuts across z do not help rays along z, but most of the tree is left out, and of what is asked almost nothing reaches f64.
+    assert!(visits.groups < n * CostStats::of(&tree).groups as u64 / 10 && visits.tests < 4 * n, "{visits:?}");
 }
