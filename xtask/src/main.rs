@@ -3,6 +3,7 @@
 //! Only the standard library is used, so that this builds in a second.
 #![forbid(unsafe_code)]
 
+mod bench;
 mod ci;
 mod golden;
 mod render;
@@ -25,7 +26,7 @@ struct Failure {
     code: u8,
 }
 
-const TASKS: [Task; 4] = [
+const TASKS: [Task; 5] = [
     Task {
         name: "render",
         takes: "[NAME|FILE|all] [gz options]",
@@ -43,6 +44,12 @@ const TASKS: [Task; 4] = [
         takes: "homework [options]",
         does: "compare with the course's reference pictures (needs GZ_HW_DATA)",
         run: verify::run,
+    },
+    Task {
+        name: "bench",
+        takes: "paper|grid|brute|scale|agree",
+        does: "measure: the paper's tables, the best of its trees, plain C, growth (see docs/BENCH.md)",
+        run: bench::run,
     },
     Task { name: "ci", takes: "", does: "format, clippy, docs and tests: what has to pass before a push", run: ci::run },
 ];
