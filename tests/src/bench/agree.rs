@@ -43,16 +43,16 @@ impl Tally {
     }
 }
 
-/// Compares the tree that tunes itself, at every SIMD level of this machine, and the paper's tree at every setting of the grid within
-/// `node_budget`, with brute force.
-pub fn compare(tris: &TriBuffer, rays: &RaySet, node_budget: usize) -> Tally {
+/// Compares the tree that tunes itself, at every SIMD level of this machine, and the paper's tree at each of `settings` within its node
+/// budget, with brute force.
+pub fn compare(tris: &TriBuffer, rays: &RaySet, settings: impl IntoIterator<Item = Midpoint>) -> Tally {
     let truth = answers(&BruteForce::new(tris), rays);
     let mut tally = Tally { rays: rays.len() as u64, ..Tally::default() };
     for &level in SimdLevel::available() {
         let tree = BspTree::build(tris).with_simd(level);
         tally.add(&truth, &answers(&tree, rays), tally.rays);
     }
-    for setting in settings(node_budget) {
+    for setting in settings {
         match MidpointTree::build(tris, setting) {
             Ok(tree) => {
                 tally.settings += 1;
@@ -105,7 +105,7 @@ pub fn run(options: &Options) -> Result<(), AppError> {
             continue;
         };
         let rays = options.rays.map_or(rays.clone(), |most| rays.sample(most)).as_closest();
-        let tally = compare(&tris, &rays, BUDGET);
+        let tally = compare(&tris, &rays, settings(BUDGET));
         rows.push(row![stem, tris.len(), tally.rays, tally.settings, tally.refused, tally.compared, tally.differing]);
         all.rays += tally.rays;
         all.compared += tally.compared;
