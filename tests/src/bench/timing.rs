@@ -13,11 +13,11 @@ pub fn seconds<T>(work: impl FnOnce() -> T) -> (f64, T) {
 /// Times every contender once a round; which one begins moves on from round to round. Row `k` holds the seconds of contender `k`.
 pub fn take_turns(rounds: usize, contenders: &mut [Box<dyn FnMut() + '_>]) -> Vec<Vec<f64>> {
     let n = contenders.len();
-    let mut times = vec![vec![0.0; rounds]; n];
+    let mut times = vec![Vec::with_capacity(rounds); n];
     for round in 0..rounds {
         for turn in 0..n {
             let k = (round + turn) % n;
-            times[k][round] = seconds(&mut contenders[k]).0;
+            times[k].push(seconds(&mut contenders[k]).0);
         }
     }
     times
