@@ -1,6 +1,7 @@
 //! What the tests of the whole workspace share, and the measurements behind `cargo xtask verify` and `cargo xtask measure`.
 #![forbid(unsafe_code)]
 
+pub mod bench;
 pub mod counting;
 pub mod homework;
 pub mod model;

@@ -3,6 +3,7 @@
 //! Only the standard library is used, so that this builds in a second.
 #![forbid(unsafe_code)]
 
+mod bench;
 mod ci;
 mod golden;
 mod measure;
@@ -26,7 +27,7 @@ struct Failure {
     code: u8,
 }
 
-const TASKS: [Task; 5] = [
+const TASKS: [Task; 6] = [
     Task {
         name: "render",
         takes: "[NAME|FILE|all] [gz options]",
@@ -50,6 +51,12 @@ const TASKS: [Task; 5] = [
         takes: "model [--write|--check] | needs",
         does: "what approximations cost, for docs/MODEL.md; what computed needs save",
         run: measure::run,
+    },
+    Task {
+        name: "bench",
+        takes: "paper|grid|brute|scale|agree",
+        does: "measure: the paper's tables, the best of its trees, plain C, growth (see docs/BENCH.md)",
+        run: bench::run,
     },
     Task { name: "ci", takes: "", does: "format, clippy, docs and tests: what has to pass before a push", run: ci::run },
 ];
