@@ -30,13 +30,14 @@ mod texture;
 mod tree;
 
 pub use aa::{Sample, samples};
-pub use explain::{ExplainNode, explain_pixel};
+pub use explain::{ExplainNode, LightPart, Sight, explain_pixel};
 pub use frame::{Frame, ShadeScratch, shade_frame, shade_tile};
 pub use light::{Arrival, Falloff, GzLight, LightKind};
 pub use material::{Interpolate, Material, MaterialKind, Surface};
 pub use needs::{NeedReason, SceneNeeds};
 pub use rules::{Antialias, ColorCode, Eye, Fresnel, GlassBlend, MirrorBlend, ShadeRules, ShadowRule};
 pub use scene::{Background, Scene};
+pub use shadow::ShadowRay;
 pub use stats::FrameStats;
 pub use texture::{ImageTexture, Procedural, Texture, TextureLookup};
 pub use tree::RayKind;
