@@ -2,8 +2,8 @@
 
 use crate::cli::AccelArgs;
 use crate::error::AppError;
-use gz_bsp::{BspTree, CostStats, Midpoint, MidpointTree, TreeStats};
-use gz_core::{BruteForce, Kernel, RayQuery, TriBuffer};
+use gz_bsp::{BspTree, CostStats, Midpoint, MidpointTree, TreeStats, VisitCount};
+use gz_core::{BruteForce, ClassMask, GzRay, Kernel, RayQuery, TriBuffer};
 
 /// How rays are answered. All answer alike, except the kernels that are there for comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,6 +122,17 @@ impl Built<'_> {
             Self::Bsp(tree) => tree,
             Self::Midpoint(tree) => tree,
         }
+    }
+
+    /// What the walk of one ray to its front-most hit visits; `None` for brute force, which has no walk.
+    pub fn visits(&self, ray: &GzRay) -> Option<VisitCount> {
+        let mut visits = VisitCount::default();
+        match self {
+            Self::Brute(_) => return None,
+            Self::Bsp(tree) => tree.closest_hit_counted(ray, ClassMask::ALL, &mut visits),
+            Self::Midpoint(tree) => tree.closest_hit_counted(ray, ClassMask::ALL, &mut visits),
+        };
+        Some(visits)
     }
 
     /// Bytes beyond the triangle buffer.

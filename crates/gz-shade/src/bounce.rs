@@ -192,7 +192,7 @@ impl Bouncer<'_> {
         let weight = (node.weight * branch.factor).max_element();
         if weight < LEAST_WEIGHT {
             self.stats.weak_branches += u64::from(weight > 0.0);
-            self.stats.weak_weight += FrameStats::units(weight);
+            self.stats.weak_weight = self.stats.weak_weight.saturating_add(FrameStats::units(weight));
             return false;
         }
         let start = direction.and_then(|d| Some((leave_surface(&meeting.at.corners, meeting.at.weights, d)?, d)));
@@ -209,7 +209,8 @@ impl Bouncer<'_> {
         let cut = node.depth >= self.scene.rules.depth;
         if cut {
             self.stats.depth_cuts += 1;
-            self.stats.depth_cut_weight += FrameStats::units((node.weight * factor).max_element());
+            let weight = FrameStats::units((node.weight * factor).max_element());
+            self.stats.depth_cut_weight = self.stats.depth_cut_weight.saturating_add(weight);
         }
         cut
     }

@@ -34,7 +34,7 @@ pub fn srgb_byte(channel: f32) -> u8 {
 
 /// The linear channel, in [0, 1], of an sRGB byte.
 pub fn linear_from_srgb_byte(byte: u8) -> f32 {
-    linear_from_srgb(f32::from(byte) / 255.0)
+    linear_from_srgb(f64::from(byte) / 255.0) as f32
 }
 
 /// The sRGB curve: linear to encoded, [0, 1] to [0, 1]. Computed in f64 by `libm`, so that every machine gives the same bits.
@@ -43,10 +43,11 @@ pub fn srgb_from_linear(channel: f32) -> f32 {
     (if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::pow(c, 1.0 / 2.4) - 0.055 }) as f32
 }
 
-/// The sRGB curve backwards: encoded to linear, [0, 1] to [0, 1].
-pub fn linear_from_srgb(encoded: f32) -> f32 {
-    let c = f64::from(encoded);
-    (if c <= 0.040_45 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }) as f32
+/// The sRGB curve backwards: encoded to linear, [0, 1] to [0, 1]. In f64, as samples of 16 bits are too fine to be rounded twice.
+///
+/// Source: IEC 61966-2-1: c / 12.92 up to 0.04045, then ((c + 0.055) / 1.055)^2.4.
+pub fn linear_from_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
 #[cfg(test)]

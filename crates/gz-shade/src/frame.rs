@@ -2,7 +2,7 @@
 
 use crate::aa::{Sample, pixel_color, sample_value, samples};
 use crate::local::Lighting;
-use crate::tree::{Node, Tree};
+use crate::tree::{MAX_NODES, Node, TooLarge, Tree};
 use crate::{FrameStats, Scene, SceneNeeds};
 use glam::{DVec2, DVec3};
 use gz_core::{GzColor, GzPixel, RayQuery, Tile, TileGrid, TileScratch, trace_tile};
@@ -19,18 +19,29 @@ pub struct Frame {
     pub stats: FrameStats,
 }
 
+/// The most pixels of a tile that are shaded at a time.
+const MOST_AT_A_TIME: usize = 1 << 14;
+
 /// Room for the work on one tile, kept from tile to tile.
+///
+/// Beside a few dozen bytes a pixel of the tile it is bounded, whatever the scene: pixels whose rays branch often are shaded few at a
+/// time.
 #[derive(Debug, Default)]
 pub struct ShadeScratch {
     primary: TileScratch,
     pixels: Vec<GzPixel>,
+    places: Vec<(u32, u32)>,
+    /// How many pixels were shaded at a time last; 0 before the first.
+    at_a_time: usize,
+    /// The colours of a sample.
+    shaded: Vec<GzColor>,
     tree: Tree,
     lighting: Lighting,
     sums: Vec<DVec3>,
 }
 
 impl ShadeScratch {
-    /// The nodes of the tile and sample worked on last.
+    /// The nodes of the pixels and the sample worked on last: of all, if the tile is a pixel.
     pub(crate) fn nodes(&self) -> &[Node] {
         &self.tree.nodes
     }
@@ -85,15 +96,14 @@ pub fn shade_tile(
     colors.clear();
     for sample in &samples {
         trace_and_shade(scene, needs, query, tile, sample.offset, scratch, stats);
-        let roots = &scratch.tree.nodes[..tile.len()];
-        stats.nan_pixels += roots.iter().filter(|root| root.color.is_nan()).count() as u64;
+        stats.nan_pixels += scratch.shaded.iter().filter(|color| color.is_nan()).count() as u64;
         if samples.len() == 1 {
             // No sum, no 12 bits of each sample: the colour itself.
-            colors.extend(roots.iter().map(|root| root.color));
+            colors.extend_from_slice(&scratch.shaded);
             return;
         }
-        for (sum, root) in scratch.sums.iter_mut().zip(roots) {
-            *sum += sample_value(code, root.color) * sample.weight;
+        for (sum, &color) in scratch.sums.iter_mut().zip(&scratch.shaded) {
+            *sum += sample_value(code, color) * sample.weight;
         }
     }
     colors.extend(scratch.sums.iter().map(|&sum| pixel_color(code, sum)));
@@ -108,7 +118,9 @@ pub(crate) fn samples_of(scene: &Scene, needs: SceneNeeds) -> Vec<Sample> {
     samples
 }
 
-/// One sample of each pixel of `tile`: the roots of the scratch's tree are its pixels, shaded.
+/// One sample of each pixel of `tile`, into the scratch's `shaded`.
+///
+/// Pixels are shaded together as far as the tree of their rays stays small; that does not show in colours or counts.
 pub(crate) fn trace_and_shade(
     scene: &Scene,
     needs: SceneNeeds,
@@ -118,19 +130,39 @@ pub(crate) fn trace_and_shade(
     scratch: &mut ShadeScratch,
     stats: &mut FrameStats,
 ) {
-    let ShadeScratch { primary, pixels, tree, lighting, .. } = scratch;
-    // Primary rays -> T-value pixels: the roots.
+    let ShadeScratch { primary, pixels, places, at_a_time, shaded, tree, lighting, .. } = scratch;
+    // Primary rays -> T-value pixels.
     trace_tile(tile, offset, &scene.camera, query, primary, pixels);
-    tree.clear();
-    let rays = tile.in_squares().map(|(i, j)| scene.camera.ray(i, j, offset));
-    tree.nodes.extend(rays.zip(pixels.iter()).map(|(ray, pixel)| Node::root(ray, pixel.hit)));
     stats.primary_rays += pixels.len() as u64;
     stats.primary_hits += pixels.iter().filter(|pixel| pixel.hit.is_hit()).count() as u64;
-    // Mirror and glass rays: the branches.
-    tree.grow(scene, needs, query, stats);
-    // What each ray sees by itself.
-    tree.show_background(scene, scene.up());
-    lighting.shade(scene, needs, query, &mut tree.nodes, stats);
-    // What that makes together.
-    tree.combine(scene.rules.clamp_levels);
+    places.clear();
+    places.extend(tile.in_squares());
+    shaded.clear();
+    if *at_a_time == 0 {
+        *at_a_time = MOST_AT_A_TIME;
+    }
+    while shaded.len() < pixels.len() {
+        let part = shaded.len()..pixels.len().min(shaded.len() + *at_a_time);
+        // The pixels: the roots.
+        tree.clear();
+        for (id, (&(i, j), pixel)) in places[part.clone()].iter().zip(&pixels[part.clone()]).enumerate() {
+            tree.nodes.push(Node::root(id as u32, scene.camera.ray(i, j, offset), pixel.hit));
+        }
+        // Mirror and glass rays: the branches.
+        let mut counted = FrameStats::default();
+        if tree.grow(scene, needs, query, &mut counted) == Err(TooLarge) {
+            *at_a_time = part.len() / 2; // not 0: one pixel is never too large
+            continue;
+        }
+        // What each ray sees by itself.
+        tree.show_background(scene, scene.up());
+        lighting.shade(scene, needs, query, &mut tree.nodes, &mut counted);
+        // What that makes together.
+        tree.combine(scene.rules.clamp_levels);
+        shaded.extend(tree.nodes[..part.len()].iter().map(|root| root.color));
+        *stats += counted;
+        if tree.nodes.len() <= MAX_NODES / 4 {
+            *at_a_time = (*at_a_time * 2).min(MOST_AT_A_TIME);
+        }
+    }
 }

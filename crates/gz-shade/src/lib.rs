@@ -2,13 +2,14 @@
 //!
 //! Nothing here names a tree or reads a file; visibility is asked through [`gz_core::RayQuery`]. The steps, each in its own file:
 //! `frame` goes tile by tile, `tree` follows mirror and glass rays (`bounce` says where they go, by the formulas in `reflection`,
-//! `refraction`, `optics` and `media`), `local` shades hits light by light (`phong` with `interpolate`, `texture`, `shadow`), `aa` sums
+//! `refraction`, `optics` and `media`, `crowd` which of too many end), `local` shades hits light by light (`phong` with `interpolate`, `texture`, `shadow`), `aa` sums
 //! samples, and `color` writes channels. `needs` says which of these a scene can do without.
 #![forbid(unsafe_code)]
 
 mod aa;
 mod bounce;
 pub mod color;
+mod crowd;
 mod explain;
 mod frame;
 mod interpolate;
@@ -29,13 +30,14 @@ mod texture;
 mod tree;
 
 pub use aa::{Sample, samples};
-pub use explain::{ExplainNode, explain_pixel};
+pub use explain::{ExplainNode, LightPart, Sight, explain_pixel};
 pub use frame::{Frame, ShadeScratch, shade_frame, shade_tile};
 pub use light::{Arrival, Falloff, GzLight, LightKind};
 pub use material::{Interpolate, Material, MaterialKind, Surface};
 pub use needs::{NeedReason, SceneNeeds};
 pub use rules::{Antialias, ColorCode, Eye, Fresnel, GlassBlend, MirrorBlend, ShadeRules, ShadowRule};
 pub use scene::{Background, Scene};
+pub use shadow::ShadowRay;
 pub use stats::FrameStats;
 pub use texture::{ImageTexture, Procedural, Texture, TextureLookup};
 pub use tree::RayKind;

@@ -2,7 +2,7 @@
 
 use crate::interpolate::{self, HitPoint};
 use crate::phong::{Coefficients, light_share};
-use crate::shadow::{ShadowRays, Shadows};
+use crate::shadow::{ShadowRay, ShadowRays, Shadows};
 use crate::tree::Node;
 use crate::{Eye, FrameStats, GzLight, Interpolate, LightKind, Material, Scene, SceneNeeds, ShadowRule, Surface, Texture};
 use glam::DVec3;
@@ -10,9 +10,9 @@ use gz_core::{GzColor, RayQuery, leave_surface, side_of};
 
 /// A hit that is shaded.
 #[derive(Debug)]
-struct Item {
+pub(crate) struct Item {
     node: u32,
-    at: HitPoint,
+    pub(crate) at: HitPoint,
     /// Weights for colours and normals: linear in screen space where the rules say so.
     weights: [f64; 3],
     /// Shaded at the corners instead of at the hit.
@@ -28,6 +28,18 @@ struct Item {
     texture: GzColor,
     /// The equation so far, at the hit or at each corner.
     sum: [GzColor; 3],
+}
+
+/// How one light meets an item, before anything in the way is asked for.
+pub(crate) enum Lit {
+    /// The light is behind the triangle.
+    Behind,
+    /// The equation gives nothing.
+    Nothing,
+    /// The shadow ray would run in the plane of the triangle.
+    InPlane,
+    /// The light adds `color`, at the hit or at each corner, times what its shadow ray says; without one when none is cast.
+    Adds { color: [GzColor; 3], start: Option<ShadowRay> },
 }
 
 /// What one light would add to an item if nothing were in the way.
@@ -65,7 +77,7 @@ impl Lighting {
             }
         }
         // 2. Light by light.
-        let casting = needs.shadows && scene.rules.shadow != ShadowRule::Off && scene.has_secondary_rays();
+        let casting = casts_shadow_rays(scene, needs);
         for light in &scene.lights {
             self.gather(scene, needs, light, casting, stats);
             if casting && !self.addends.is_empty() {
@@ -90,37 +102,30 @@ impl Lighting {
         self.addends.clear();
         self.rays.clear();
         for (id, item) in self.items.iter().enumerate() {
-            let arrival = light.arrive(item.at.point);
-            if item.viewer != 0 && side_of(&item.at.corners, arrival.direction) != item.viewer {
-                continue; // the light is behind the triangle
-            }
-            let color = if item.corners {
-                let normals = interpolate::normals_at_corners(&scene.tris, needs, item.at.tri);
-                std::array::from_fn(|corner| {
-                    let arrival = light.arrive(item.at.corners[corner].as_dvec3());
-                    light_share(&item.k, normals[corner], arrival.to_light, item.e) * arrival.color
-                })
-            } else {
-                [light_share(&item.k, item.n, arrival.to_light, item.e) * arrival.color, GzColor::ZERO, GzColor::ZERO]
-            };
-            if color == [GzColor::ZERO; 3] {
-                continue;
-            }
-            if casting {
-                let Some(origin) = leave_surface(&item.at.corners, item.at.weights, arrival.direction) else {
+            let (color, start) = match item.lit_by(scene, needs, light, casting) {
+                Lit::Behind | Lit::Nothing => continue,
+                Lit::InPlane => {
                     stats.absorbed += 1;
                     continue;
-                };
-                self.rays.push(origin, arrival.direction, arrival.tmax);
+                }
+                Lit::Adds { color, start } => (color, start),
+            };
+            if let Some(start) = start {
+                self.rays.push(start.origin, start.direction, start.tmax);
             }
             self.addends.push(Addend { item: id as u32, color });
         }
     }
 }
 
+/// Whether shadow rays are cast at all.
+pub(crate) fn casts_shadow_rays(scene: &Scene, needs: SceneNeeds) -> bool {
+    needs.shadows && scene.rules.shadow != ShadowRule::Off && scene.has_secondary_rays()
+}
+
 impl Item {
     /// The hit of `node` before any light.
-    fn of(scene: &Scene, needs: SceneNeeds, id: u32, node: &Node) -> Self {
+    pub(crate) fn of(scene: &Scene, needs: SceneNeeds, id: u32, node: &Node) -> Self {
         let (tris, rules, tri) = (&scene.tris, &scene.rules, node.hit.tri);
         let material = scene.material(tri);
         let at = HitPoint::of(tris, tri, &node.ray);
@@ -153,10 +158,49 @@ impl Item {
         Self { node: id, at, weights, corners, n, e, viewer, k, texture, sum: [k.ka * scene.ambient; 3] }
     }
 
+    /// How `light` meets it, and its shadow ray when they are `casting`.
+    pub(crate) fn lit_by(&self, scene: &Scene, needs: SceneNeeds, light: &GzLight, casting: bool) -> Lit {
+        let arrival = light.arrive(self.at.point);
+        if self.viewer != 0 && side_of(&self.at.corners, arrival.direction) != self.viewer {
+            return Lit::Behind;
+        }
+        let color = if self.corners {
+            let normals = interpolate::normals_at_corners(&scene.tris, needs, self.at.tri);
+            std::array::from_fn(|corner| {
+                let arrival = light.arrive(self.at.corners[corner].as_dvec3());
+                light_share(&self.k, normals[corner], arrival.to_light, self.e) * arrival.color
+            })
+        } else {
+            [light_share(&self.k, self.n, arrival.to_light, self.e) * arrival.color, GzColor::ZERO, GzColor::ZERO]
+        };
+        if color == [GzColor::ZERO; 3] {
+            return Lit::Nothing;
+        }
+        if !casting {
+            return Lit::Adds { color, start: None };
+        }
+        match leave_surface(&self.at.corners, self.at.weights, arrival.direction) {
+            Some(origin) => {
+                Lit::Adds { color, start: Some(ShadowRay { origin, direction: arrival.direction, tmax: arrival.tmax }) }
+            }
+            None => Lit::InPlane,
+        }
+    }
+
     /// The colour, once every light has been added.
     fn color(&self, clamp: bool) -> GzColor {
         let limit = |color: GzColor| if clamp { color.clamp(GzColor::ZERO, GzColor::ONE) } else { color };
-        if self.corners { interpolate::color(self.sum.map(limit), self.weights) * self.texture } else { limit(self.sum[0]) }
+        self.at_hit(self.sum.map(limit))
+    }
+
+    /// The part of the sum that ambient light makes, before any clamp.
+    pub(crate) fn ambient(&self, scene: &Scene) -> GzColor {
+        self.at_hit([self.k.ka * scene.ambient; 3])
+    }
+
+    /// What colours at the hit or at each corner are at the hit.
+    pub(crate) fn at_hit(&self, color: [GzColor; 3]) -> GzColor {
+        if self.corners { interpolate::color(color, self.weights) * self.texture } else { color[0] }
     }
 }
 

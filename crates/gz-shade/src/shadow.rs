@@ -8,6 +8,17 @@ use crate::{Scene, ShadowRule};
 use glam::DVec3;
 use gz_core::{ClassMask, GzColor, GzCoord, Hit, PerRay, RayBatch, RayQuery, TriClass};
 
+/// A ray from a surface to a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadowRay {
+    /// Where it starts, on the side of the triangle that it goes to; shading space.
+    pub origin: DVec3,
+    /// To the light.
+    pub direction: GzCoord,
+    /// Where it ends, t in lengths of `direction`: infinite for a directional light.
+    pub tmax: f32,
+}
+
 /// The shadow rays of one light: one direction and no end for a directional light, one of each per ray for a point light.
 #[derive(Debug, Default)]
 pub(crate) struct ShadowRays {
@@ -41,6 +52,25 @@ impl ShadowRays {
     }
 }
 
+/// The triangles that let no light through.
+fn blockers(scene: &Scene) -> ClassMask {
+    match scene.rules.shadow {
+        ShadowRule::Tinted => ClassMask::only(TriClass::Opaque),
+        _ => ClassMask::ALL,
+    }
+}
+
+/// What one shadow ray finds: the share of the light that reaches its start, and the first triangle that lets none through, if any.
+pub(crate) fn look(scene: &Scene, query: &dyn RayQuery, ray: &ShadowRay) -> (GzColor, Hit) {
+    let mut rays = ShadowRays::default();
+    rays.push(ray.origin, ray.direction, ray.tmax);
+    let mut shadows = Shadows::default();
+    shadows.trace(scene, query, &rays, false);
+    let mut blocker = [Hit::MISS];
+    query.closest_hits(&rays.batch(false), blockers(scene), &mut blocker);
+    (shadows.shares[0], blocker[0])
+}
+
 /// What share of one light reaches the start of each of its shadow rays, and the room that finding it takes.
 #[derive(Debug, Default)]
 pub(crate) struct Shadows {
@@ -58,7 +88,7 @@ impl Shadows {
     /// Traces `rays`; returns how many further questions were asked about glass in the way.
     pub(crate) fn trace(&mut self, scene: &Scene, query: &dyn RayQuery, rays: &ShadowRays, common_direction: bool) -> u64 {
         let tinted = scene.rules.shadow == ShadowRule::Tinted;
-        let blockers = if tinted { ClassMask::only(TriClass::Opaque) } else { ClassMask::ALL };
+        let blockers = blockers(scene);
         self.blocked.clear();
         self.blocked.resize(rays.origins.len(), false);
         query.any_hits(&rays.batch(common_direction), blockers, &mut self.blocked);

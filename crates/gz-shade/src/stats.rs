@@ -25,6 +25,10 @@ pub struct FrameStats {
     pub weak_branches: u64,
     /// Their weight, summed in units of [`FrameStats::WEIGHT_UNIT`].
     pub weak_weight: u64,
+    /// Branches not followed because 1024 heavier ones, or equal and earlier ones, go on from the same sample at the same depth.
+    pub crowded_branches: u64,
+    /// Their weight, summed in units of [`FrameStats::WEIGHT_UNIT`].
+    pub crowded_weight: u64,
     /// Shadow, mirror and glass rays that would have run in the plane of the triangle they start on: black.
     pub absorbed: u64,
     /// Reflections and refractions by an interpolated normal that would have come out on the wrong side of the triangle, and were
@@ -53,7 +57,7 @@ impl FrameStats {
     }
 
     /// Each count with its name, in a fixed order, for printing.
-    pub fn rows(&self) -> [(&'static str, u64); 16] {
+    pub fn rows(&self) -> [(&'static str, u64); 18] {
         [
             ("primary_rays", self.primary_rays),
             ("shadow_rays", self.shadow_rays),
@@ -66,6 +70,8 @@ impl FrameStats {
             ("depth_cut_weight", self.depth_cut_weight),
             ("weak_branches", self.weak_branches),
             ("weak_weight", self.weak_weight),
+            ("crowded_branches", self.crowded_branches),
+            ("crowded_weight", self.crowded_weight),
             ("absorbed", self.absorbed),
             ("below_surface", self.below_surface),
             ("unmatched_exits", self.unmatched_exits),
@@ -90,6 +96,8 @@ impl std::ops::AddAssign for FrameStats {
             depth_cut_weight,
             weak_branches,
             weak_weight,
+            crowded_branches,
+            crowded_weight,
             absorbed,
             below_surface,
             unmatched_exits,
@@ -107,6 +115,8 @@ impl std::ops::AddAssign for FrameStats {
         self.depth_cut_weight = self.depth_cut_weight.saturating_add(depth_cut_weight);
         self.weak_branches += weak_branches;
         self.weak_weight = self.weak_weight.saturating_add(weak_weight);
+        self.crowded_branches += crowded_branches;
+        self.crowded_weight = self.crowded_weight.saturating_add(crowded_weight);
         self.absorbed += absorbed;
         self.below_surface += below_surface;
         self.unmatched_exits += unmatched_exits;
@@ -133,6 +143,8 @@ mod tests {
             depth_cut_weight: 1,
             weak_branches: 1,
             weak_weight: 1,
+            crowded_branches: 1,
+            crowded_weight: 1,
             absorbed: 1,
             below_surface: 1,
             unmatched_exits: 1,

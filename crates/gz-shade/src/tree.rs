@@ -1,6 +1,7 @@
-//! The rays of a tile's pixels as trees: camera rays are the roots, mirror and glass rays their descendants.
+//! The rays of pixels as trees: camera rays are the roots, mirror and glass rays their descendants.
 
 use crate::bounce::{Bouncer, Branch};
+use crate::crowd::Crowd;
 use crate::media::{Media, MediaStacks};
 use crate::{FrameStats, GlassBlend, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
@@ -20,10 +21,19 @@ pub enum RayKind {
 /// The parent of a node that has none.
 pub(crate) const NO_PARENT: u32 = u32::MAX;
 
+/// The most nodes that a tree of several roots grows to: about 350 bytes each, with what shading them takes.
+pub(crate) const MAX_NODES: usize = 1 << 16;
+
+/// A tree of several roots would pass [`MAX_NODES`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TooLarge;
+
 /// One ray, what it hit, and its part in the pixel's colour.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub(crate) parent: u32,
+    /// The camera ray that it descends from.
+    pub(crate) root: u32,
     pub(crate) kind: RayKind,
     /// 0 for a camera ray.
     pub(crate) depth: u32,
@@ -44,10 +54,11 @@ pub(crate) struct Node {
 }
 
 impl Node {
-    /// A camera ray.
-    pub(crate) fn root(ray: GzRay, hit: Hit) -> Self {
+    /// A camera ray, node `id`.
+    pub(crate) fn root(id: u32, ray: GzRay, hit: Hit) -> Self {
         Self {
             parent: NO_PARENT,
+            root: id,
             kind: RayKind::Primary,
             depth: 0,
             ray,
@@ -62,12 +73,13 @@ impl Node {
     }
 }
 
-/// All nodes of a tile, children after their parents, and the room that growing them takes.
+/// All nodes of a tile or of a part of one, children after their parents, and the room that growing them takes.
 #[derive(Debug, Default)]
 pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
     media: MediaStacks,
     branches: Vec<Branch>,
+    crowd: Crowd,
     origins: Vec<DVec3>,
     directions: Vec<GzCoord>,
     hits: Vec<Hit>,
@@ -82,11 +94,24 @@ impl Tree {
 
     /// Follows mirror and glass rays, level by level, from the roots; each kind of a level is one batch. With a depth limit of 0 no
     /// bounce was asked for, and none counts as cut.
-    pub(crate) fn grow(&mut self, scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, stats: &mut FrameStats) {
+    ///
+    /// A single root is always grown to the end, as [`Crowd`] limits what descends from it.
+    ///
+    /// # Errors
+    ///
+    /// [`TooLarge`] if there are several roots and more nodes than [`MAX_NODES`]; tree and `stats` are then of no use.
+    pub(crate) fn grow(
+        &mut self,
+        scene: &Scene,
+        needs: SceneNeeds,
+        query: &dyn RayQuery,
+        stats: &mut FrameStats,
+    ) -> Result<(), TooLarge> {
         if !(needs.mirrors || needs.glass) || scene.rules.depth == 0 || !scene.has_secondary_rays() {
-            return;
+            return Ok(());
         }
-        let mut level = 0..self.nodes.len();
+        let roots = self.nodes.len();
+        let mut level = 0..roots;
         while !level.is_empty() {
             // 1. Where do the hits of this level go on?
             self.branches.clear();
@@ -98,12 +123,17 @@ impl Tree {
                     self.nodes[id].keep = bouncer.bounce(id as u32, &node);
                 }
             }
-            // 2. Those rays are the next level.
+            // 2. The heaviest of those rays are the next level.
+            self.crowd.thin(&mut self.branches, &mut self.nodes, scene.rules.mirror_blend, stats);
+            if roots > 1 && self.nodes.len() + self.branches.len() > MAX_NODES {
+                return Err(TooLarge);
+            }
             level = self.nodes.len()..self.nodes.len();
             for kind in [RayKind::Mirror, RayKind::Glass] {
                 level.end += self.trace(kind, scene, query, stats);
             }
         }
+        Ok(())
     }
 
     /// Traces the branches of one kind as a batch and adds them as nodes; returns how many there are.
@@ -122,7 +152,7 @@ impl Tree {
                 media: branch.media,
                 factor: branch.factor,
                 weight: parent.weight * branch.factor,
-                ..Node::root(branch.ray, Hit::MISS)
+                ..Node::root(parent.root, branch.ray, Hit::MISS)
             });
         }
         let count = self.nodes.len() - first;

@@ -138,7 +138,7 @@ fn the_papers_mistake_reflects_the_last_light_about_a_normal_not_turned() {
     made.rules = ShadeRules { mirror_blend: MirrorBlend::Add, reflect_last_light: true, ..ShadeRules::PAPER };
     let mirror = made.material(dark(MaterialKind::Mirror { ior: Some(1.5) }));
     made.wall(0.0, 5.0, mirror);
-    let child = |made: &Made, i| made.explain(i, 8)[1];
+    let child = |made: &Made, i| made.explain(i, 8).swap_remove(1);
     // Along the stored normal the light's direction is reflected rightly: away behind the wall, with the share of air to glass.
     let along = child(&made, 3);
     assert!((along.ray.direction - gz_core::GzCoord::new(0.8, 0.0, -0.6)).length() < 1e-6);

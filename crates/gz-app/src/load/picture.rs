@@ -3,6 +3,7 @@
 use super::text;
 use crate::error::LoadError;
 use gz_core::GzColor;
+use gz_shade::color::linear_from_srgb;
 use gz_shade::{ImageTexture, TextureLookup};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
@@ -114,13 +115,6 @@ fn colors<T: Copy + Into<usize>>(samples: &[T], channels: usize, most: u32, srgb
         [] => GzColor::ZERO,
     };
     samples.chunks_exact(channels).map(color).collect()
-}
-
-/// The sRGB curve, from [0, 1] to [0, 1].
-///
-/// Source: IEC 61966-2-1: c / 12.92 up to 0.04045, then ((c + 0.055) / 1.055)^2.4.
-fn linear_from_srgb(encoded: f64) -> f64 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
 /// Width, height and samples of a `P6` file as the course's loader finds them.

@@ -144,6 +144,9 @@ fn a_pixel_and_a_scene_are_explained() {
     let folder = Folder::with_scene("pixel");
     let out = folder.done("pixel scene.toml 16 14 --size 32x24 --compare brute").out;
     assert!(out.contains("hit        triangle ") && out.contains("primary ray from"), "{out}");
+    for part in ["visited    ", " tests in f64", "ambient adds [", "light 0 adds [", "own colour ["] {
+        assert!(out.contains(part), "{part} in {out}");
+    }
     assert!(folder.done("pixel scene.toml 0 0 --size 32x24 --kernel plane --compare brute").out.contains("hit        nothing"));
     let out = folder.done("info scene.toml --size 32x24").out;
     assert!(out.contains("picture    32x24, camera pinhole\n") && out.contains("lights     1\n"), "{out}");

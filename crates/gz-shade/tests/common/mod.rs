@@ -178,7 +178,7 @@ pub fn heaviest_leaf(nodes: &[ExplainNode]) -> ExplainNode {
     };
     let is_leaf = |k: &usize| !nodes.iter().any(|node| node.parent == Some(*k));
     let best = (0..nodes.len()).filter(is_leaf).max_by(|&a, &b| f32::total_cmp(&weight(a), &weight(b)));
-    nodes[best.unwrap()]
+    nodes[best.unwrap()].clone()
 }
 
 /// Counts the rays that pass to brute force.
