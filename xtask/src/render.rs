@@ -3,9 +3,16 @@
 use crate::{Failure, cargo, finish, root};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// What to render when nothing is named.
 const DEFAULT_SCENE: &str = "teapot";
+
+/// The environment variable that names the folder of course data.
+const COURSE_VARIABLE: &str = "GZ_HW_DATA";
+
+/// The exit code of gz for a scene that cannot be used.
+const BAD_SCENE: i32 = 3;
 
 /// Renders the scene that the first argument names, the default one without; the rest goes to `gz render`.
 pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
@@ -18,7 +25,11 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         one => vec![scene(one)?],
     };
     finish(cargo().args(["build", "--release", "--package", "gz-app", "--bin", "gz"]), "building gz")?;
-    // One that fails, perhaps for want of course data, does not keep the others from being rendered.
+    let (scenes, without) = if what == "all" { parted(scenes) } else { (scenes, Vec::new()) };
+    if !without.is_empty() {
+        println!("skipping {}: they need course data, see GZ_HW_DATA in README.md", without.join(", "));
+    }
+    // One that fails does not keep the others from being rendered.
     let failures: Vec<Failure> = scenes.iter().filter_map(|scene| render(scene, options).err()).collect();
     let Some(first) = failures.first() else { return Ok(()) };
     let messages: Vec<&str> = failures.iter().map(|failure| failure.message.as_str()).collect();
@@ -33,15 +44,44 @@ fn split(arguments: &[String]) -> (&str, &[String]) {
     }
 }
 
+/// The scenes that can be rendered here, and the names of those that cannot for want of course data.
+fn parted(scenes: Vec<PathBuf>) -> (Vec<PathBuf>, Vec<String>) {
+    if std::env::var_os(COURSE_VARIABLE).is_some_and(|folder| !folder.is_empty()) {
+        return (scenes, Vec::new()); // a file that is not in the folder is a failure
+    }
+    let (without, here): (Vec<_>, Vec<_>) = scenes.into_iter().partition(|scene| lacks_course_data(scene));
+    (here, without.iter().map(|scene| stem(scene)).collect())
+}
+
+/// Whether gz refuses the scene for want of course data; a stand-in in the scene keeps it from doing so.
+fn lacks_course_data(scene: &Path) -> bool {
+    match gz().arg("info").arg(scene).output() {
+        Ok(ended) => ended.status.code() == Some(BAD_SCENE) && asks_for_course_data(&String::from_utf8_lossy(&ended.stderr)),
+        Err(_) => false, // rendering it tells why
+    }
+}
+
+/// Whether this is gz's hint to set the variable.
+fn asks_for_course_data(message: &str) -> bool {
+    message.contains(&format!("set {COURSE_VARIABLE}"))
+}
+
 fn names_output(options: &[String]) -> bool {
     options.iter().any(|option| option.starts_with("-o") || option.starts_with("--output"))
 }
 
-fn render(scene: &Path, options: &[String]) -> Result<(), Failure> {
+/// The gz that was built.
+fn gz() -> Command {
     let mut command = cargo();
+    command.args(["run", "--quiet", "--release", "--package", "gz-app", "--bin", "gz", "--"]);
+    command
+}
+
+fn render(scene: &Path, options: &[String]) -> Result<(), Failure> {
+    let mut command = gz();
     // Paths among the options are meant from where the user stands, not from the workspace.
     let here = std::env::current_dir().unwrap_or_else(|_| root());
-    command.current_dir(&here).args(["run", "--quiet", "--release", "--package", "gz-app", "--bin", "gz", "--", "render"]);
+    command.current_dir(&here).arg("render");
     let shown = |path: &Path| path.strip_prefix(&here).unwrap_or(path).to_owned();
     let scene = shown(scene);
     command.arg(&scene).args(options);
@@ -75,12 +115,16 @@ fn scene(name: &str) -> Result<PathBuf, Failure> {
         return Ok(file); // a missing file is gz's to report
     }
     let scenes = known_scenes()?;
-    let stem = |scene: &PathBuf| scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let known: Vec<String> = scenes.iter().map(stem).collect();
+    let known: Vec<String> = scenes.iter().map(|scene| stem(scene)).collect();
     match known.iter().position(|stem| stem == name) {
         Some(k) => Ok(scenes[k].clone()),
         None => Err(Failure { message: format!("no scene {name}: it is a file, all, or one of {}", known.join(", ")), code: 2 }),
     }
+}
+
+/// What a scene is called.
+fn stem(scene: &Path) -> String {
+    scene.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// The scene files of `assets/scenes`, by name.
@@ -97,6 +141,13 @@ fn known_scenes() -> Result<Vec<PathBuf>, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_the_hint_counts_as_absent_course_data() {
+        let hint = "gz: hw3.toml:21: \"hw:pot4.asc\" is course data: set GZ_HW_DATA to the folder of course data\n";
+        assert!(asks_for_course_data(hint));
+        assert!(!asks_for_course_data("gz: a.toml:5: no such file: pot.asc (GZ_HW_DATA must be the folder of course data)\n"));
+    }
 
     #[test]
     fn the_scene_comes_first_and_may_be_left_out() {

@@ -1,30 +1,25 @@
 //! HW5's application, call by call: `GZ_HW_DATA=... cargo run --release -p gz-app --example application5 [output.ppm]`.
 //!
 //! With the course's data it makes the homework's picture; without, our own teapot and texture stand in for it.
-#![allow(clippy::approx_constant, reason = "the course's directions have four digits")]
 
 use gz_app::display::GzDisplay;
-use gz_app::homework::{GzAttribute, GzRender};
+use gz_app::homework::{GzAttribute, GzRender, course_lights, course_placement};
 use gz_app::load::{asc, picture};
 use gz_app::teapot;
 use gz_core::glam::DVec3;
-use gz_core::{CameraModel, GzColor, GzMatrix, View};
+use gz_core::{CameraModel, GzColor, View};
 use gz_shade::{Interpolate, ShadeRules, Texture, TextureLookup};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+const OWN_TEXTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/textures/porcelain.png");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The course's data, or ours.
-    let (mesh, texture) = match std::env::var_os("GZ_HW_DATA") {
-        Some(folder) => (
-            asc::load(&Path::new(&folder).join("ppot.asc"))?,
-            // The course's loader reads every texel one place late.
-            picture::texture(&Path::new(&folder).join("texture.ppm"), TextureLookup::Homework, false, true)?,
-        ),
-        None => {
-            let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/textures/porcelain.png");
-            (teapot::tessellate(4, false), picture::texture(&file, TextureLookup::Homework, false, false)?)
-        }
+    // The course's data, whose loader reads every texel one place late, or ours.
+    let (mesh, file, late) = match std::env::var_os("GZ_HW_DATA").map(PathBuf::from) {
+        Some(folder) => (asc::load(&folder.join("ppot.asc"))?, folder.join("texture.ppm"), true),
+        None => (teapot::tessellate(4, false), Path::new(OWN_TEXTURE).to_owned(), false),
     };
+    let texture = picture::texture(&file, TextureLookup::Homework, false, late)?;
 
     // GzNewDisplay, GzNewRender, GzPutCamera, GzBeginRender
     let mut render = GzRender::new(GzDisplay::new(256, 256)?, CameraModel::Homework, ShadeRules::HOMEWORK);
@@ -34,15 +29,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     render.gz_begin_render()?;
 
     // GzPutAttribute: lights in image space, then the shader and its coefficients, then the texture.
-    for (direction, color) in [
-        ([-0.7071, 0.7071, 0.0], [0.5, 0.5, 0.9]),
-        ([0.0, -0.7071, -0.7071], [0.9, 0.2, 0.3]),
-        ([0.7071, 0.0, -0.7071], [0.2, 0.7, 0.3]),
-    ] {
-        render.gz_put_attribute(GzAttribute::DirectionalLight { direction: direction.into(), color: color.into() })?;
-    }
+    render.gz_put_attributes(course_lights())?;
     render.gz_put_attributes([
-        GzAttribute::AmbientLight(GzColor::splat(0.3)),
         GzAttribute::Interpolate(Interpolate::Phong),
         GzAttribute::AmbientCoefficient(GzColor::splat(0.1)),
         GzAttribute::DiffuseCoefficient(GzColor::splat(0.7)),
@@ -51,15 +39,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         GzAttribute::TextureMap(Some(Texture::Image(texture))),
     ])?;
 
-    // GzPushMatrix: scale, rotate about y by -30 degrees, about x by -45, in the course's four digits.
-    let s = 3.25;
-    let (sin30, cos30, sin45) = (0.5, 0.866, 0.7071);
-    for matrix in [
-        [[s, 0.0, 0.0, 0.0], [0.0, s, 0.0, -3.25], [0.0, 0.0, s, 3.5], [0.0, 0.0, 0.0, 1.0]],
-        [[cos30, 0.0, -sin30, 0.0], [0.0, 1.0, 0.0, 0.0], [sin30, 0.0, cos30, 0.0], [0.0, 0.0, 0.0, 1.0]],
-        [[1.0, 0.0, 0.0, 0.0], [0.0, sin45, sin45, 0.0], [0.0, -sin45, sin45, 0.0], [0.0, 0.0, 0.0, 1.0]],
-    ] {
-        render.gz_push_matrix(&GzMatrix(matrix))?;
+    // GzPushMatrix: scale, rotate about y, rotate about x
+    for matrix in course_placement() {
+        render.gz_push_matrix(&matrix)?;
     }
 
     // GzPutTriangle, GzRaytracing, GzFlushDisplay2File

@@ -5,8 +5,10 @@
 //! [`GzAttribute`], status codes become errors.
 
 mod attribute;
+mod course;
 
 pub use attribute::{GzAttribute, HomeworkError};
+pub use course::{course_lights, course_placement};
 
 use crate::display::{DisplayPixel, GzDisplay};
 use glam::DVec3;

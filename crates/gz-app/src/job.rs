@@ -3,7 +3,7 @@
 use crate::accel::Accel;
 use crate::cli::{RenderArgs, SceneArgs};
 use crate::error::AppError;
-use crate::load::Overrides;
+use crate::load::{Overrides, expect_scene};
 use crate::new_file::NewFile;
 use crate::output::ImageFormat;
 use crate::progress::ProgressMode;
@@ -51,35 +51,39 @@ impl RenderJob {
     ///
     /// # Errors
     ///
-    /// [`AppError::Usage`] for options that contradict each other, [`AppError::Io`] for a file that cannot be written.
+    /// [`AppError::Usage`] for options that contradict each other, [`AppError::Load`] for a name that is no scene's,
+    /// [`AppError::Io`] for a file that cannot be written.
     pub fn of(args: &RenderArgs) -> Result<Self, AppError> {
         let accel = Accel::of(&args.scene.accel)?;
         let scene = args.scene.scene.clone();
+        expect_scene(&scene)?;
         let output = match &args.output {
             Some(path) => path.clone(),
             None => default_output(&scene),
         };
         let format = ImageFormat::of(&output)?;
-        let aa = args.scene.aa.unwrap_or(Antialias::None);
-        if args.tbuffer.is_some() && aa != Antialias::None {
+        if args.tbuffer.is_some() && args.scene.aa.is_some_and(takes_many) {
             return Err(tbuffer_with_antialiasing());
         }
         // Everything is asked for before anything is touched: two names for one file would lose one of them.
-        let mut taken: Vec<PathBuf> = vec![scene.clone()];
-        let mut new_file = |path: &Path| -> Result<NewFile, AppError> {
+        let mut taken = vec![("", scene.clone())];
+        let mut new_file = |option: &'static str, path: &Path| -> Result<NewFile, AppError> {
             let file = NewFile::at(path)?;
-            if let Some(other) = taken.iter().find(|other| file.is(other)) {
-                let other = if *other == scene { "the scene itself".to_owned() } else { format!("also {}", other.display()) };
-                return Err(AppError::Usage(format!("{}: would be overwritten: it is {other}", path.display())));
+            if let Some((other, _)) = taken.iter().find(|(_, other)| file.is(other)) {
+                let path = path.display();
+                return Err(AppError::Usage(match *other {
+                    "" => format!("{path}: {option} would overwrite the scene itself"),
+                    other => format!("{path}: {other} and {option} name the same file"),
+                }));
             }
-            taken.push(path.to_owned());
+            taken.push((option, path.to_owned()));
             Ok(file)
         };
         Ok(Self {
-            output: new_file(&output)?,
+            output: new_file("--output", &output)?,
             format,
-            stats_json: args.stats_json.as_deref().map(&mut new_file).transpose()?,
-            tbuffer: args.tbuffer.as_deref().map(&mut new_file).transpose()?,
+            stats_json: args.stats_json.as_deref().map(|path| new_file("--stats-json", path)).transpose()?,
+            tbuffer: args.tbuffer.as_deref().map(|path| new_file("--tbuffer", path)).transpose()?,
             overrides: overrides(&args.scene),
             scene,
             accel,
@@ -113,7 +117,7 @@ impl RenderJob {
                 area.height()
             )));
         }
-        if self.tbuffer.is_some() && scene.rules.antialias != Antialias::None {
+        if self.tbuffer.is_some() && takes_many(scene.rules.antialias) {
             return Err(tbuffer_with_antialiasing());
         }
         Ok(area)
@@ -130,6 +134,11 @@ fn default_output(scene: &Path) -> PathBuf {
     let mut name = scene.file_stem().unwrap_or("picture".as_ref()).to_owned();
     name.push(".png");
     PathBuf::from(name)
+}
+
+/// Whether a pixel has more samples than the one at the pixel itself.
+fn takes_many(rule: Antialias) -> bool {
+    !matches!(rule, Antialias::None | Antialias::Samples(0 | 1))
 }
 
 fn tbuffer_with_antialiasing() -> AppError {

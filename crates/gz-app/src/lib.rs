@@ -26,3 +26,8 @@ pub mod stats;
 pub mod teapot;
 pub mod threads;
 pub mod view;
+
+/// The README's Rust code, run with the documentation's tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -1,14 +1,14 @@
 //! What primary rays found, as T-buffers and as pictures.
 
 use gz_core::glam::DVec2;
-use gz_core::{GzColor, Hit, RayQuery, TileGrid, TileScratch, trace_tile};
+use gz_core::{CameraModel, GzColor, Hit, RayQuery, TileGrid, TileScratch, trace_tile};
 use gz_shade::{Frame, Scene};
 use rayon::prelude::*;
 
 /// What a picture shows in place of colours. A pixel without a hit is black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
-    /// The T-value: white for the nearest hit of the picture, dark for the farthest.
+    /// The T-value: white where the scene's box begins as seen from the camera, dark where it ends. The same in every crop.
     T,
     /// The triangle, each number in a colour of its own.
     Id,
@@ -39,12 +39,14 @@ pub fn trace_hits(scene: &Scene, query: &dyn RayQuery, grid: &TileGrid) -> Vec<H
 impl View {
     /// Colours in [0, 1] for `hits`, the hits of `grid`'s area. Encoded like any picture.
     pub fn colors(self, scene: &Scene, hits: &[Hit], grid: &TileGrid) -> Vec<GzColor> {
-        let ts = || hits.iter().filter(|hit| hit.is_hit() && hit.t.is_finite()).map(|hit| hit.t);
-        let (near, far) = (ts().fold(f32::INFINITY, f32::min), ts().fold(f32::NEG_INFINITY, f32::max));
+        let (near, far) = t_range(scene);
         let color = |(pixel, hit): ((u32, u32), &Hit)| match self {
             _ if !hit.is_hit() => GzColor::ZERO,
             // From 1 down to 0.1, so that the farthest hit is still told from none; one depth alone is white.
-            Self::T if far > near => GzColor::splat(1.0 - 0.9 * ((hit.t - near) / (far - near)).clamp(0.0, 1.0)),
+            Self::T if far > near => {
+                let depth = (f64::from(hit.t) - near) / (far - near);
+                GzColor::splat(1.0 - 0.9 * depth.clamp(0.0, 1.0) as f32)
+            }
             Self::T => GzColor::ONE,
             Self::Id => id_color(hit.tri),
             Self::Normal => {
@@ -61,6 +63,23 @@ impl View {
         let stats = gz_shade::FrameStats { primary_rays: hits.len() as u64, ..Default::default() };
         Frame { area: grid.area(), colors: self.colors(scene, hits, grid), stats }
     }
+}
+
+/// The least and the greatest T-value that the box of all triangles leaves to a primary ray, to rounding.
+///
+/// It does not depend on what is rendered of the picture, so that a crop is that part of the whole.
+fn t_range(scene: &Scene) -> (f64, f64) {
+    let bounds = scene.tris.bounds();
+    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    if scene.camera.model() == CameraModel::Screen {
+        // Parallel rays along z, from 0.
+        return (min.z.max(0.0), max.z);
+    }
+    // All other rays start at one point and are of unit length: T is the distance from there.
+    let eye = scene.camera.ray(0, 0, DVec2::ZERO).origin;
+    let nearest = eye.clamp(min, max);
+    let farthest = (eye - min).abs().max((eye - max).abs());
+    (eye.distance(nearest), farthest.length())
 }
 
 /// A colour that neighbouring numbers do not share: the number, well mixed, as three bytes from a quarter up.

@@ -37,5 +37,5 @@ mod values;
 mod words;
 
 pub use draft::Draft;
-pub use scene_file::scene;
+pub use scene_file::{expect_scene, scene};
 pub use settings::Overrides;

@@ -28,9 +28,21 @@ pub fn scene(path: &Path, overrides: &Overrides) -> Result<Draft, LoadError> {
 
 /// [`scene`] with the folder of course data given.
 pub(super) fn scene_with(path: &Path, overrides: &Overrides, course: Option<&Path>) -> Result<Draft, LoadError> {
+    expect_scene(path)?;
     match extension(path).as_str() {
         "toml" => from_toml(path, overrides, course),
-        "obj" | "asc" => bare::scene(path, overrides),
+        _ => bare::scene(path, overrides),
+    }
+}
+
+/// Refuses, by its name alone, a file that cannot be a scene.
+///
+/// # Errors
+///
+/// If its extension is none of toml, obj and asc.
+pub fn expect_scene(path: &Path) -> Result<(), LoadError> {
+    match extension(path).as_str() {
+        "toml" | "obj" | "asc" => Ok(()),
         _ => Err(LoadError::bad(path, None, "a scene is a .toml, .obj or .asc file")),
     }
 }

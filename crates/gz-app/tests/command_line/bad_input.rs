@@ -28,6 +28,9 @@ fn a_mesh_that_is_missing_is_told_with_the_line_that_names_it() {
 #[test]
 fn a_scene_has_one_of_three_extensions() {
     let folder = Folder::with_scene("extension");
+    // Its picture would have the same name, which is not what is wrong.
+    folder.write("a.png", "");
+    folder.fails("render a.png", 3, "a.png: a scene is a .toml, .obj or .asc file");
     folder.write("a.txt", SCENE);
     let ended = folder.gz("render a.txt -o out.png");
     assert_eq!((ended.code, ended.err.lines().count()), (3, 1));
@@ -109,9 +112,10 @@ fn no_file_is_written_over_another_of_the_same_run() {
     folder.fails(
         "render scene.toml -o out.png --stats-json scene.toml",
         2,
-        "scene.toml: would be overwritten: it is the scene itself",
+        "scene.toml: --stats-json would overwrite the scene itself",
     );
-    folder.fails("render scene.toml -o out.png --tbuffer ./out.png", 2, "./out.png: would be overwritten: it is also out.png");
+    folder.fails("render scene.toml -o out.png --tbuffer ./out.png", 2, "./out.png: --output and --tbuffer name the same file");
+    folder.fails("render scene.toml --stats-json a --tbuffer a", 2, "a: --stats-json and --tbuffer name the same file");
     assert_eq!(folder.read("scene.toml"), SCENE.as_bytes());
 }
 

@@ -1,6 +1,6 @@
 //! `gz` as a user runs it: files written, figures printed, exit codes.
 
-use crate::folder::Folder;
+use crate::folder::{Folder, SCENE};
 use image::RgbImage;
 use serde_json::Value;
 
@@ -39,6 +39,32 @@ fn threads_and_tiles_do_not_show_and_a_crop_is_that_part() {
     let part = image::imageops::crop_imm(&whole, 20, 10, 41, 23).to_image();
     assert!(picture(&folder, "crop.png") == part);
     assert!(part.pixels().any(|p| p != part.get_pixel(0, 0)), "the part shows something");
+}
+
+#[test]
+fn a_crop_is_that_part_in_every_view_of_every_camera() {
+    let folder = Folder::with_scene("view-crop");
+    for camera in ["pinhole", "homework", "paper", "screen"] {
+        for view in ["t", "id", "normal"] {
+            let options = format!("--camera {camera} --size 48x48 --view {view} --progress none");
+            folder.done(&format!("render scene.toml -o whole.png {options}"));
+            folder.done(&format!("render scene.toml -o part.png {options} --crop 18,20,30,41"));
+            let part = image::imageops::crop_imm(&picture(&folder, "whole.png"), 18, 20, 12, 21).to_image();
+            assert!(picture(&folder, "part.png") == part, "{camera} {view}");
+            assert!(part.pixels().any(|p| p != part.get_pixel(0, 0)), "{camera} {view}: the part shows something");
+        }
+    }
+}
+
+#[test]
+fn one_sample_has_a_t_value() {
+    let folder = Folder::with_scene("one-sample");
+    folder.done("render scene.toml -o a.png --size 32x24 --tbuffer none.hits");
+    folder.done("render scene.toml -o b.png --size 32x24 --tbuffer one.hits --aa 1");
+    folder.write("one.toml", &format!("[render]\naa = 1\n{SCENE}"));
+    folder.done("render one.toml -o c.png --size 32x24 --tbuffer scene.hits");
+    assert!(folder.read("none.hits") == folder.read("one.hits") && folder.read("none.hits") == folder.read("scene.hits"));
+    assert!(folder.read("a.png") == folder.read("b.png"));
 }
 
 #[test]

@@ -120,6 +120,7 @@ impl Bins {
     }
 
     /// Takes over what `other`, made for the same box, has seen. Counts and boxes do not depend on the order.
+    #[cfg(feature = "rayon")]
     pub(crate) fn merge(&mut self, other: &Self) {
         for (mine, theirs) in self.bins.iter_mut().flatten().zip(other.bins.iter().flatten()) {
             mine.begin += theirs.begin;
