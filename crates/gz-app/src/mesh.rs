@@ -1,6 +1,13 @@
 //! A mesh as loaded or tessellated, in model space, before it is placed.
 
 use gz_core::{GzCoord, GzTextureIndex};
+use std::path::PathBuf;
+
+/// The smoothing group of triangles that the file puts in none: the crease angle alone decides.
+pub const UNGROUPED: u32 = u32::MAX;
+
+/// The smoothing group that is not smoothed (`s off`).
+pub const FLAT: u32 = 0;
 
 /// Indexed triangles. Triangle numbers are final: nothing is dropped or reordered after loading.
 #[derive(Clone, Debug, Default)]
@@ -13,6 +20,9 @@ pub struct Mesh {
     pub uvs: Vec<GzTextureIndex>,
     /// Triangles, in file order over all groups.
     pub triangles: Vec<MeshTri>,
+    /// The smoothing group of each triangle, which computed normals follow: [`UNGROUPED`], [`FLAT`], or another number, across
+    /// whose border nothing is smoothed. Empty when no triangle is in one.
+    pub smoothing: Vec<u32>,
     /// The materials that the file itself brings (MTL), named by [`MeshTri::material`].
     pub materials: Vec<MeshMaterial>,
     /// What was odd but usable, one line each with file and line number; the command prints them once.
@@ -51,6 +61,19 @@ pub struct MeshMaterial {
     pub tf: Option<[f32; 3]>,
     /// `illum`, if given.
     pub illum: Option<u32>,
-    /// `map_Kd`, resolved beside the MTL file.
-    pub map_kd: Option<std::path::PathBuf>,
+    /// `map_Kd`, if given.
+    pub map_kd: Option<MeshTexture>,
+}
+
+/// A texture that an MTL file names, and where it does.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MeshTexture {
+    /// The picture, resolved beside the MTL file; it need not exist.
+    pub file: PathBuf,
+    /// The MTL file.
+    pub library: PathBuf,
+    /// The line in it, counting from 1.
+    pub line: usize,
+    /// Options before the file name, which are not supported.
+    pub dropped: Vec<String>,
 }

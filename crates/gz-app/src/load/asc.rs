@@ -73,7 +73,8 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Mesh, LoadError> {
         return Err(LoadError::bad(path, None, "no triangles"));
     }
     if let [(line, word), more @ ..] = &odd_words[..] {
-        let message = format!("a triangle begins with {} instead of \"triangle\" ({} more like it)", quoted(word), more.len());
+        let others = if more.is_empty() { String::new() } else { format!(" ({} more like it)", more.len()) };
+        let message = format!("a triangle begins with {} instead of \"triangle\"{others}", quoted(word));
         mesh.warnings.push(warning(path, *line, message));
     }
     zero_normals.report(path, "triangle", "with a normal of length 0, left without", &mut mesh.warnings);
@@ -166,7 +167,7 @@ mod tests {
         let mesh = read(&TWO.replace("0 0 2", "0 0 0").replace("triangle2", "facet")).unwrap();
         assert_eq!((mesh.triangles[0].normal, mesh.triangles[1].normal), (None, Some([3, 4, 5])));
         let expected = [
-            r#"t.asc:5: a triangle begins with "facet" instead of "triangle" (0 more like it)"#,
+            r#"t.asc:5: a triangle begins with "facet" instead of "triangle""#,
             "t.asc:1: 1 triangle with a normal of length 0, left without",
         ];
         assert_eq!(mesh.warnings, expected);

@@ -5,7 +5,7 @@ use super::entries::load_mesh;
 use super::lights::direction_in_shading_space;
 use super::own_material::own_materials;
 use super::part::{Part, PartMaterials, unit};
-use super::settings::{DEFAULT_FOV, Overrides, default_size};
+use super::settings::{DEFAULT_FOV, Overrides, default_size, holds};
 use super::surfaces::Palette;
 use super::words::{LightSpace, Mode, NormalsRule};
 use crate::error::LoadError;
@@ -47,6 +47,12 @@ pub(super) fn scene(path: &Path, overrides: &Overrides) -> Result<Draft, LoadErr
     let model = overrides.camera.unwrap_or(CameraModel::Pinhole);
     let (width, height) = overrides.size.unwrap_or(default_size(model));
     let view = if model == CameraModel::Screen { None } else { Some(frame(&mesh, model, width, height)) };
+    // Without pixels there is no view to judge; the camera refuses that below.
+    if width > 0 && height > 0 && view.is_some_and(|view| !holds(view.position) || !holds(view.look_at)) {
+        return Err(bad(
+            "the mesh is too large or too small to be framed: rays start at coordinates of 0 or 2^-150 to 2^128, the camera would not".to_owned()
+        ));
+    }
     let camera = GzCamera::new(CameraSpec { model, view, width, height }).map_err(|error| bad(error.to_string()))?;
     let mode = Mode::of(model);
     let rules = overrides.applied_to(mode.rules(), path)?;
@@ -65,6 +71,7 @@ pub(super) fn scene(path: &Path, overrides: &Overrides) -> Result<Draft, LoadErr
         label: path.display().to_string(),
         world_from_model: GzMatrix::IDENTITY,
         normals: NormalsRule::File,
+        crease: None,
         materials: PartMaterials::Own { by_mesh, fallback },
         app_color: None,
         changes: BTreeMap::new(),

@@ -126,6 +126,14 @@ impl Entries<'_> {
                 PartMaterials::Own { by_mesh, fallback }
             }
         };
+        let crease = match entry.inherited(|keys| keys.crease.as_ref()) {
+            None => None,
+            Some(angle) if (0.0..=180.0).contains(&angle.get_ref().0) => Some(angle.get_ref().0),
+            Some(angle) => {
+                let message = format!("crease must be 0 to 180 degrees, not {}", angle.get_ref().0);
+                return Err(text.error(angle.span(), message));
+            }
+        };
         let place = entry.inherited(|keys| keys.place.as_deref()).unwrap_or_default();
         let world_from_model = self.placement(place, span)?;
         let changes = self.changes(&entry.keys.overrides, loaded.mesh.triangles.len())?;
@@ -136,6 +144,7 @@ impl Entries<'_> {
             label: loaded.label,
             world_from_model,
             normals: entry.inherited(|keys| keys.normals).map_or(NormalsRule::File, |word| word.0),
+            crease,
             materials,
             app_color: app_color.map(|keys| AppColor { direction: keys.direction.0, color: keys.color.0 }),
             changes,

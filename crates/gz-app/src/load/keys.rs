@@ -1,6 +1,6 @@
 //! The keys of a scene file, table by table, as serde reads them. What they mean is in docs/SCENE.md.
 
-use super::values::{Aa, BackgroundValue, Color, Number, OneOrMany, OneOrThree, Xyz};
+use super::values::{Aa, BackgroundValue, Color, Number, OneOrMany, OneOrThree, Tint, Xyz};
 use super::words::{Kind, LightSpace, Mode, NormalsRule, Word};
 use gz_core::CameraModel;
 use gz_shade::{ColorCode, Eye, Fresnel, GlassBlend, Interpolate, MirrorBlend, ShadowRule, Surface, TextureLookup};
@@ -110,7 +110,7 @@ pub(super) struct MaterialKeys {
     pub(super) power: Option<Spanned<Number>>,
     pub(super) kind: Option<Word<Kind>>,
     pub(super) ior: Option<Spanned<Number>>,
-    pub(super) tint: Option<Color>,
+    pub(super) tint: Option<Tint>,
     pub(super) texture: Option<Spanned<String>>,
     pub(super) interpolate: Option<Word<Interpolate>>,
     pub(super) surface: Option<Word<Surface>>,
@@ -126,6 +126,7 @@ pub(super) struct MeshKeys {
     pub(super) triangles: Option<Vec<[Xyz; 3]>>,
     pub(super) material: Option<Spanned<String>>,
     pub(super) normals: Option<Word<NormalsRule>>,
+    pub(super) crease: Option<Spanned<Number>>,
     pub(super) place: Option<Vec<Spanned<PlaceKeys>>>,
     #[serde(default, rename = "override")]
     pub(super) overrides: Vec<Spanned<OverrideKeys>>,

@@ -22,6 +22,8 @@ mod part;
 mod place;
 mod polygon;
 #[cfg(test)]
+mod range_tests;
+#[cfg(test)]
 mod reference_tests;
 mod scene_file;
 #[cfg(test)]

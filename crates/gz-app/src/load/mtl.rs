@@ -5,9 +5,10 @@
 //! a value, a file name without options.
 
 use super::obj::Materials;
-use super::text::{self, Lines, name, quoted, warning, words};
+use super::text::{self, Lines, Tally, name, quoted, warning, words};
+use super::values::MAX_COLOR;
 use crate::error::LoadError;
-use crate::mesh::MeshMaterial;
+use crate::mesh::{MeshMaterial, MeshTexture};
 use std::fmt::Write;
 use std::path::{Component, Path, PathBuf};
 
@@ -16,17 +17,13 @@ pub(super) const MAX_FILE: u64 = 64 << 20;
 
 /// Keys of the format, and of its common extension for physically based materials, that this renderer has no use for.
 const PASSED_OVER: &[&str] = &[
-    "Ke",
     "Km",
-    "d",
-    "Tr",
     "sharpness",
     "map_Ka",
     "map_Ks",
     "map_Ke",
     "map_Ns",
     "map_Ni",
-    "map_d",
     "map_Tr",
     "map_opacity",
     "map_bump",
@@ -53,13 +50,17 @@ const PASSED_OVER: &[&str] = &[
     "map_Ps",
 ];
 
+/// Keys that change the picture elsewhere and not here, with what they would do and the value at which they do nothing.
+const MISSED: [(&str, &str, Option<f32>); 4] =
+    [("d", "opacity", Some(1.0)), ("Tr", "transparency", Some(0.0)), ("Ke", "emission", Some(0.0)), ("map_d", "opacity", None)];
+
 /// One material before `tobj` has read it.
 struct Record {
     line: usize,
     name: String,
     /// Its lines in known form.
     text: String,
-    map_kd: Option<PathBuf>,
+    map_kd: Option<MeshTexture>,
 }
 
 /// Adds the materials of the library at `path`, whose text is `bytes`. `root` is the folder of the OBJ file, which textures must
@@ -81,6 +82,7 @@ pub(super) fn read(
 ) -> Result<(), LoadError> {
     let mut records: Vec<Record> = Vec::new();
     let mut unknown: Vec<String> = Vec::new();
+    let mut missed = [Tally::default(); MISSED.len()];
     for line in Lines::new(bytes) {
         let bad = |message: String| LoadError::bad(path, line.number, message);
         let (key, rest) = text::keyword(&line.text);
@@ -93,6 +95,13 @@ pub(super) fn read(
             match name(rest) {
                 name if name.is_empty() => return Err(bad("newmtl without a name".to_owned())),
                 name => records.push(Record { line: line.number, name, text: String::new(), map_kd: None }),
+            }
+            continue;
+        }
+        if let Some(at) = MISSED.iter().position(|(missed, ..)| *missed == key) {
+            let neutral = |word: &[u8]| text::number(word, "").ok() == MISSED[at].2 && MISSED[at].2.is_some();
+            if !words(rest).all(neutral) {
+                missed[at].add(line.number);
             }
             continue;
         }
@@ -115,8 +124,7 @@ pub(super) fn read(
             "Ns" | "Ni" => Ok(Some(value(&key, rest).map_err(bad)?)),
             "illum" => illum(rest),
             "map_Kd" => {
-                let file = map_kd(rest, path, root, &mut warn).map_err(bad)?;
-                record.map_kd = file.or(record.map_kd.take());
+                record.map_kd = Some(map_kd(rest, path, line.number, root, &mut warn).map_err(bad)?);
                 Ok(None)
             }
             _ => color(&key, rest).map_err(bad)?,
@@ -126,6 +134,9 @@ pub(super) fn read(
             Ok(None) => {}
             Err(ignored) => warn(ignored),
         }
+    }
+    for ((key, meaning, _), tally) in MISSED.into_iter().zip(missed) {
+        tally.report(path, &format!("{key} line"), &format!("ignored: {meaning} is not supported"), warnings);
     }
     take(path, records, materials, warnings)
 }
@@ -158,6 +169,9 @@ fn take(path: &Path, records: Vec<Record>, materials: &mut Materials, warnings: 
             map_kd,
             name: name.clone(),
         };
+        if material.illum == Some(3) && material.ks.is_some_and(|ks| ks.iter().any(|&channel| channel > 1.0)) {
+            return Err(LoadError::bad(path, line, "Ks of a mirror (illum 3) is its tint and must be at most 1"));
+        }
         match materials.put(material) {
             None => return Err(LoadError::bad(path, line, "more than 65536 materials")),
             Some(true) => warnings.push(warning(path, line, format!("material {name:?} is defined again, the last one is used"))),
@@ -174,6 +188,8 @@ fn in_range<'a>(key: &str, word: &'a [u8]) -> Result<&'a str, String> {
     match key {
         "Ni" if value <= 0.0 => Err(format!("Ni must be above 0, not {word}")),
         _ if value < 0.0 => Err(format!("{key} must not be negative: {word}")),
+        "Tf" if value > 1.0 => Err(format!("Tf must be at most 1, not {word}")),
+        "Ka" | "Kd" | "Ks" if value > MAX_COLOR => Err(format!("{key} must be at most {MAX_COLOR}, not {word}")),
         _ => Ok(word),
     }
 }
@@ -211,7 +227,8 @@ fn illum(rest: &[u8]) -> Result<Option<String>, String> {
 }
 
 /// The texture that `map_Kd` names, beside the library. Options are named in a warning and passed over.
-fn map_kd(rest: &[u8], path: &Path, root: &Path, warn: &mut impl FnMut(String)) -> Result<Option<PathBuf>, String> {
+fn map_kd(rest: &[u8], path: &Path, line: usize, root: &Path, warn: &mut impl FnMut(String)) -> Result<MeshTexture, String> {
+    let mut dropped = Vec::new();
     let full = name(rest);
     let mut file = full.as_str();
     while let Some(option) = file.split_whitespace().next().filter(|word| word.len() > 1 && word.starts_with('-')) {
@@ -233,6 +250,7 @@ fn map_kd(rest: &[u8], path: &Path, root: &Path, warn: &mut impl FnMut(String)) 
             after = after[word.len()..].trim_start();
         }
         warn(format!("map_Kd option {option} is not supported, ignored"));
+        dropped.push(option.to_owned());
         file = after;
     }
     if file.is_empty() {
@@ -240,7 +258,10 @@ fn map_kd(rest: &[u8], path: &Path, root: &Path, warn: &mut impl FnMut(String)) 
     }
     let outside = || format!("texture {file:?} is outside the folder of the mesh");
     let beside = path.parent().unwrap_or(Path::new("")).join(inside(file).ok_or_else(outside)?);
-    if beside.starts_with(root) { Ok(Some(beside)) } else { Err(outside()) }
+    if !beside.starts_with(root) {
+        return Err(outside());
+    }
+    Ok(MeshTexture { file: beside, library: path.to_owned(), line, dropped })
 }
 
 /// A file name as a relative path that stays in its folder, with `\` for `/` too; `None` if it is absolute, has a drive letter,

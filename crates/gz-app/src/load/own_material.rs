@@ -3,7 +3,7 @@
 use super::picture;
 use super::surfaces::{DEFAULT_IOR, Palette};
 use crate::error::LoadError;
-use crate::mesh::{Mesh, MeshMaterial};
+use crate::mesh::{Mesh, MeshMaterial, MeshTexture};
 use gz_core::{GzColor, MaterialId};
 use gz_shade::{Material, MaterialKind, Surface, Texture};
 use std::path::Path;
@@ -38,11 +38,12 @@ fn add(palette: &mut Palette, material: &MeshMaterial, path: &Path, warnings: &m
         let name = &material.name;
         warnings.push(format!("{}: illum {illum} of material \"{name}\" is shown as illum 2", path.display()));
     }
-    if let Some(file) = &material.map_kd {
+    if let Some(map) = &material.map_kd {
+        let file = &map.file;
         made.texture = Some(match palette.by_path.get(file) {
             Some(&known) => known,
             None => {
-                let read = picture::texture(file, palette.lookup, palette.srgb, false)?;
+                let read = picture::texture(file, palette.lookup, palette.srgb, false).map_err(|error| refused(map, &error))?;
                 palette.textures.push(Texture::Image(read));
                 palette.by_path.insert(file.clone(), palette.textures.len() - 1);
                 palette.textures.len() - 1
@@ -50,6 +51,15 @@ fn add(palette: &mut Palette, material: &MeshMaterial, path: &Path, warnings: &m
         });
     }
     palette.add(made).map_err(|message| LoadError::bad(path, None, message))
+}
+
+/// What is wrong with a texture, at the line that names it. Warnings are lost with the mesh, so dropped options are told here.
+fn refused(map: &MeshTexture, error: &LoadError) -> LoadError {
+    let mut message = format!("{}: {}", error.message, map.file.display());
+    if !map.dropped.is_empty() {
+        message += &format!(" (map_Kd option {} is not supported, ignored)", map.dropped.join(", "));
+    }
+    LoadError::bad(&map.library, map.line, message)
 }
 
 /// The material without its texture.

@@ -19,6 +19,8 @@ pub(super) struct Part {
     pub(super) label: String,
     pub(super) world_from_model: GzMatrix,
     pub(super) normals: NormalsRule,
+    /// Degrees, 0 to 180; `None` where the scene does not say.
+    pub(super) crease: Option<f64>,
     pub(super) materials: PartMaterials,
     pub(super) app_color: Option<AppColor>,
     /// Triangles that the scene changes, by their number in this mesh.

@@ -132,11 +132,11 @@ fn compute_missing_normals(part: &mut Part) {
     match part.normals {
         NormalsRule::Flat => {}
         NormalsRule::File if part.mesh.triangles.iter().all(|tri| tri.normal.is_some()) => {}
-        NormalsRule::File => part.mesh.compute_smooth_normals(),
+        NormalsRule::File => part.mesh.compute_smooth_normals(part.crease),
         NormalsRule::Smooth => {
             part.mesh.normals.clear();
             part.mesh.triangles.iter_mut().for_each(|tri| tri.normal = None);
-            part.mesh.compute_smooth_normals();
+            part.mesh.compute_smooth_normals(part.crease);
         }
     }
 }

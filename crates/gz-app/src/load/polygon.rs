@@ -11,6 +11,9 @@ pub(crate) const MAX_CONCAVE: usize = 4096;
 pub(crate) struct Triangulator {
     flat: Vec<DVec2>,
     left: Vec<u32>,
+    /// For each corner one that lay in its ear when it was last tried; itself where there was none.
+    blocker: Vec<u32>,
+    is_cut: Vec<bool>,
     triangles: Vec<[u32; 3]>,
 }
 
@@ -70,12 +73,17 @@ impl Triangulator {
     fn clip_ears(&mut self) {
         self.left.clear();
         self.left.extend(0..self.flat.len() as u32);
+        self.blocker.clear();
+        self.blocker.extend(0..self.flat.len() as u32);
+        self.is_cut.clear();
+        self.is_cut.resize(self.flat.len(), false);
         let (mut at, mut tried) = (1, 0);
         while self.left.len() > 3 {
             let n = self.left.len();
             let ear = [self.left[(at + n - 1) % n], self.left[at], self.left[(at + 1) % n]];
             if tried == n || self.is_ear(ear) {
                 self.triangles.push(ear);
+                self.is_cut[ear[1] as usize] = true;
                 self.left.remove(at);
                 at %= n - 1;
                 tried = 0;
@@ -88,14 +96,24 @@ impl Triangulator {
     }
 
     /// A left turn whose triangle, edges included, holds no other corner that is left; corners at the same place do not count.
-    fn is_ear(&self, ear: [u32; 3]) -> bool {
+    ///
+    /// A corner that was in the way is asked again first: mostly it still is, and the others need not be looked at.
+    fn is_ear(&mut self, ear: [u32; 3]) -> bool {
         let [a, b, c] = ear.map(|k| self.flat[k as usize]);
-        turn(a, b, c) > 0.0
-            && !self
-                .left
-                .iter()
-                .map(|&k| self.flat[k as usize])
-                .any(|p| p != a && p != b && p != c && turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0)
+        let inside = |k: u32| {
+            let p = self.flat[k as usize];
+            p != a && p != b && p != c && turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0
+        };
+        if turn(a, b, c) <= 0.0 {
+            return false;
+        }
+        let last = self.blocker[ear[1] as usize];
+        if !self.is_cut[last as usize] && inside(last) {
+            return false;
+        }
+        let found = self.left.iter().copied().find(|&k| inside(k));
+        self.blocker[ear[1] as usize] = found.unwrap_or(ear[1]);
+        found.is_none()
     }
 }
 
@@ -194,5 +212,23 @@ mod tests {
         corners[7].y += 100.0;
         assert!(cutter.cut(&corners).is_none());
         assert_eq!(cutter.cut(&corners[..MAX_CONCAVE]).unwrap().len(), MAX_CONCAVE - 2);
+    }
+
+    #[test]
+    fn a_long_spiral_is_cut_without_overlap() {
+        // Two arms of a spiral, out along one and back along the other: half of the corners turn the wrong way.
+        let arm = |k: usize, width: f32| {
+            let turn = k as f32 * 0.1;
+            [libm::cosf(turn) * (turn + width), libm::sinf(turn) * (turn + width), 0.0]
+        };
+        let half = MAX_CONCAVE / 2;
+        let spiral: Vec<[f32; 3]> =
+            (0..half).map(|k| arm(k + 20, 1.0)).chain((0..half).rev().map(|k| arm(k + 20, 0.0))).collect();
+        let triangles = cut(&spiral);
+        let flat: Vec<DVec2> = spiral.iter().map(|&[x, y, _]| DVec2::new(f64::from(x), f64::from(y))).collect();
+        let outline = (0..flat.len()).map(|k| flat[k].perp_dot(flat[(k + 1) % flat.len()])).sum::<f64>() / 2.0;
+        let inside = area(&spiral, &triangles);
+        assert_eq!(triangles.len(), MAX_CONCAVE - 2);
+        assert!((inside - outline.abs()).abs() < 1e-6 * inside, "{inside} {outline}");
     }
 }

@@ -6,11 +6,12 @@ use super::keys::SceneKeys;
 use super::lights::lights;
 use super::settings::{Overrides, settings};
 use super::source::{COURSE_VARIABLE, Finder};
-use super::spot::SceneText;
+use super::spot::{SceneText, line_starts};
 use super::{bare, surfaces};
 use crate::error::LoadError;
 use gz_core::GzColor;
 use gz_shade::Background;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Reads a scene: a `.toml` scene file, or a bare `.obj` or `.asc` mesh, which is put before a camera and three lights.
@@ -53,7 +54,11 @@ fn from_toml(path: &Path, overrides: &Overrides, course: Option<&Path>) -> Resul
         let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
         LoadError::bad(path, line, "not UTF-8 text")
     })?;
-    let text = SceneText { path, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    // Old Mac line ends, which TOML does not know.
+    let text = if text.contains('\n') { Cow::Borrowed(text) } else { Cow::Owned(text.replace('\r', "\n")) };
+    let starts = line_starts(&text);
+    let text = SceneText { path, text: &text, starts: &starts };
     let keys: SceneKeys = toml::from_str(text.text).map_err(|error| text.toml_error(&error))?;
 
     let mut warnings = Vec::new();

@@ -5,7 +5,7 @@ use super::spot::SceneText;
 use super::words::{Mode, Word};
 use crate::error::LoadError;
 use glam::DVec3;
-use gz_core::{CameraError, CameraModel, CameraSpec, GzCamera, View};
+use gz_core::{CameraError, CameraModel, CameraSpec, GzCamera, GzCoord, GzRay, View};
 use gz_shade::{Antialias, Fresnel, ShadeRules};
 use std::path::Path;
 use toml::Spanned;
@@ -127,6 +127,11 @@ fn rules(text: SceneText<'_>, keys: &RenderKeys, mode: Mode) -> Result<ShadeRule
     Ok(rules)
 }
 
+/// Whether rays can start at `point`.
+pub(super) fn holds(point: DVec3) -> bool {
+    GzRay::from_f64(point, GzCoord::Z).is_valid()
+}
+
 fn view(text: SceneText<'_>, camera: &Spanned<CameraKeys>, model: CameraModel) -> Result<Option<View>, LoadError> {
     let keys = camera.get_ref();
     let says_nothing = keys.position.is_none() && keys.look_at.is_none() && keys.up.is_none() && keys.fov.is_none();
@@ -135,6 +140,12 @@ fn view(text: SceneText<'_>, camera: &Spanned<CameraKeys>, model: CameraModel) -
     }
     let missing = |name: &str| text.error(camera.span(), format!("the camera has no {name}"));
     let position = keys.position.ok_or_else(|| missing("position"))?.0;
+    if !holds(position) {
+        return Err(text.error(
+            camera.span(),
+            "the camera's position is where rays cannot start: its coordinates must be 0 or 2^-150 to 2^128",
+        ));
+    }
     let look_at = keys.look_at.ok_or_else(|| missing("look_at"))?.0;
     let up = keys.up.map_or(DVec3::Y, |up| up.0);
     let fov = keys.fov.as_ref().map_or(DEFAULT_FOV, |fov| fov.get_ref().0);

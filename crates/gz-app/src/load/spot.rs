@@ -10,13 +10,20 @@ use std::path::Path;
 pub(super) struct SceneText<'a> {
     pub(super) path: &'a Path,
     pub(super) text: &'a str,
+    /// Where its lines start, as [`line_starts`] gives it.
+    pub(super) starts: &'a [usize],
+}
+
+/// The offset at which each line of `text` starts, in bytes. Made once: a scene asks for the lines of all its tables.
+pub(super) fn line_starts(text: &str) -> Vec<usize> {
+    let ends = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(at, _)| at + 1);
+    std::iter::once(0).chain(ends).collect()
 }
 
 impl SceneText<'_> {
     /// The line that the byte `offset` stands in, counting from 1.
     pub(super) fn line(&self, offset: usize) -> usize {
-        let end = offset.min(self.text.len());
-        1 + self.text.as_bytes()[..end].iter().filter(|&&byte| byte == b'\n').count()
+        self.starts.partition_point(|&start| start <= offset)
     }
 
     /// An error at what stands at `span`.
@@ -72,7 +79,9 @@ mod tests {
 
     #[test]
     fn lines_count_from_one_and_end_with_the_text() {
-        let text = SceneText { path: Path::new("s.toml"), text: "a\nb\r\nc" };
+        let written = "a\nb\r\nc";
+        let starts = line_starts(written);
+        let text = SceneText { path: Path::new("s.toml"), text: written, starts: &starts };
         assert_eq!([0, 1, 2, 5, 6, 99].map(|offset| text.line(offset)), [1, 1, 2, 3, 3, 3]);
     }
 

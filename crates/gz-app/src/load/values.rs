@@ -122,10 +122,30 @@ impl<'de> Deserialize<'de> for Color {
     }
 }
 
+/// A colour of which no channel is above 1: what takes part of the light on its way must not add any, bounce after bounce.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tint(pub(super) GzColor);
+
+impl<'de> Deserialize<'de> for Tint {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let Color(tint) = Color::deserialize(deserializer)?;
+        match tint.max_element() {
+            most if most <= 1.0 => Ok(Self(tint)),
+            most => Err(de::Error::custom(format!("a tint must be at most 1, not {most}"))),
+        }
+    }
+}
+
+/// The greatest channel of a colour. Products of several of them with the light of 32 bounces stay far within f32.
+pub(super) const MAX_COLOR: f32 = 1e6;
+
 fn color<E: de::Error>(value: OneOrThree) -> Result<Color, E> {
     let color = value.xyz().as_vec3();
     if color.min_element() < 0.0 {
         return Err(E::custom(format!("a colour must not be negative: {}", color.min_element())));
+    }
+    if color.max_element() > MAX_COLOR {
+        return Err(E::custom(format!("a colour must be at most {MAX_COLOR}, not {}", color.max_element())));
     }
     Ok(Color(color))
 }

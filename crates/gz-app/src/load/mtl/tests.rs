@@ -26,7 +26,7 @@ fn every_key_is_read() {
         ni: Some(1.45),
         tf: Some([0.5, 0.6, 0.7]),
         illum: Some(7),
-        map_kd: Some("dir/tex/my wood.png".into()),
+        map_kd: Some(MeshTexture { file: "dir/tex/my wood.png".into(), library: "dir/a.mtl".into(), line: 10, dropped: vec![] }),
     };
     assert_eq!((materials, warnings), (vec![expected], vec![]));
 }
@@ -63,8 +63,28 @@ fn an_odd_line_loses_no_material() {
         "dir/a.mtl:7: Kd spectral colours are not supported, ignored",
         r#"dir/a.mtl:8: unknown key "foo", ignored"#,
         r#"dir/a.mtl:10: illum takes a number from 0 to 10, not "", ignored"#,
+        "dir/a.mtl:5: 1 d line ignored: opacity is not supported",
     ];
     assert_eq!(warnings, expected);
+}
+
+#[test]
+fn what_would_change_the_picture_is_told_once_a_key() {
+    let text = "newmtl a\nd 1\nTr 0\nKe 0 0 0\nnewmtl b\nd 0.5\nd 0.2\nTr 1\nKe 0 0 2\nmap_d x.png\n";
+    let expected = [
+        "dir/a.mtl:6: 2 d lines ignored: opacity is not supported",
+        "dir/a.mtl:8: 1 Tr line ignored: transparency is not supported",
+        "dir/a.mtl:9: 1 Ke line ignored: emission is not supported",
+        "dir/a.mtl:10: 1 map_d line ignored: opacity is not supported",
+    ];
+    assert_eq!(parse(text).unwrap().1, expected);
+}
+
+#[test]
+fn colours_beyond_the_range_of_shading_are_refused() {
+    assert_eq!(error("newmtl a\nTf 1 3e38 1"), "dir/a.mtl:2: Tf must be at most 1, not 3e38");
+    assert_eq!(error("newmtl a\nKd 2e6"), "dir/a.mtl:2: Kd must be at most 1000000, not 2e6");
+    assert_eq!(error("newmtl a\nKs 2\nillum 3"), "dir/a.mtl:1: Ks of a mirror (illum 3) is its tint and must be at most 1");
 }
 
 #[test]
@@ -76,7 +96,10 @@ fn a_material_defined_again_keeps_its_place_and_warns() {
 
 #[test]
 fn options_of_a_texture_are_named_and_its_file_is_found() {
-    let map = |text: &str| parse(&format!("newmtl a\nmap_Kd {text}")).map(|(list, warnings)| (list[0].map_kd.clone(), warnings));
+    let map = |text: &str| {
+        parse(&format!("newmtl a\nmap_Kd {text}"))
+            .map(|(list, warnings)| (list[0].map_kd.as_ref().map(|map| map.file.clone()), warnings))
+    };
     let option = |name| format!("dir/a.mtl:2: map_Kd option {name} is not supported, ignored");
     assert_eq!(map("-s 1 1 1 t.png"), Ok((Some("dir/t.png".into()), vec![option("-s")])));
     assert_eq!(map("-o 1 my t.png"), Ok((Some("dir/my t.png".into()), vec![option("-o")])));

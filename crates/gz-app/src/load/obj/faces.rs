@@ -5,7 +5,7 @@ use super::{MAX_NAMED, Materials};
 use crate::error::LoadError;
 use crate::load::polygon::{MAX_CONCAVE, Triangulator};
 use crate::load::text::{self, Lines, Tally, warning};
-use crate::mesh::MeshTri;
+use crate::mesh::{FLAT, MeshTri, UNGROUPED};
 use gz_core::GzCoord;
 use std::path::Path;
 
@@ -33,9 +33,10 @@ struct Oddities {
     some_normals: Tally,
     zero_normals: Tally,
     no_area: Tally,
+    no_group: Tally,
 }
 
-/// All triangles of `bytes`, whose vertices are `vertices`.
+/// All triangles of `bytes`, whose vertices are `vertices`, and their smoothing groups, empty where the file has none.
 ///
 /// # Errors
 ///
@@ -46,8 +47,10 @@ pub(super) fn read(
     vertices: &Vertices,
     materials: &Materials,
     warnings: &mut Vec<String>,
-) -> Result<Vec<MeshTri>, LoadError> {
+) -> Result<(Vec<MeshTri>, Vec<u32>), LoadError> {
     let mut triangles = Vec::new();
+    let mut smoothing = Vec::new();
+    let mut group = UNGROUPED;
     if triangles.try_reserve_exact(vertices.triangles).is_err() {
         return Err(LoadError::bad(path, None, format!("not enough memory for {} triangles", vertices.triangles)));
     }
@@ -65,12 +68,22 @@ pub(super) fn read(
             b"vt" => before.uvs += 1,
             b"vn" => before.normals += 1,
             b"f" | b"fo" => {
+                let before_face = triangles.len();
                 face.corners.clear();
                 for word in text::words(rest) {
                     face.corners.push(corner(word, all, before).map_err(bad)?);
                 }
                 face.cut(vertices, material, line.number, &mut odd, &mut triangles).map_err(bad)?;
+                // Files without groups, which are most, take no memory for them.
+                if group != UNGROUPED || !smoothing.is_empty() {
+                    smoothing.resize(before_face, UNGROUPED);
+                    smoothing.resize(triangles.len(), group);
+                }
             }
+            b"s" => match smoothing_group(rest) {
+                Some(given) => group = given,
+                None => odd.no_group.add(line.number),
+            },
             b"usemtl" => {
                 let name = text::name(rest);
                 material = materials.numbers.get(&name).copied();
@@ -88,7 +101,8 @@ pub(super) fn read(
     odd.some_normals.report(path, "triangle", "with normals at some corners only, left without", warnings);
     odd.zero_normals.report(path, "triangle", "with a normal of length 0, left without", warnings);
     odd.no_area.report(path, "triangle", "without area, numbered but never hit", warnings);
-    Ok(triangles)
+    odd.no_group.report(path, "smoothing group", "neither off nor a number, ignored", warnings);
+    Ok((triangles, smoothing))
 }
 
 /// Room for one face after another.
@@ -166,7 +180,7 @@ fn corner(word: &[u8], all: Counts, before: Counts) -> Result<Corner, String> {
         return Err(no_corner());
     }
     let find = |field: &[u8], what, all, before| match integer(field) {
-        Some(index) => resolve(index, what, all, before),
+        Some(index) => resolve(index, field, what, all, before),
         None => Err(no_corner()),
     };
     Ok(Corner {
@@ -176,13 +190,24 @@ fn corner(word: &[u8], all: Counts, before: Counts) -> Result<Corner, String> {
     })
 }
 
-/// An array position from an index: 1 is the first of the whole file, -1 the last one before this line.
-fn resolve(index: i64, what: &str, all: usize, before: usize) -> Result<u32, String> {
+/// `s off`, or `s` and the number of a group, 0 being off.
+fn smoothing_group(rest: &[u8]) -> Option<u32> {
+    let mut words = text::words(rest);
+    match (words.next(), words.next()) {
+        (Some(b"off"), None) => Some(FLAT),
+        (Some(word), None) => std::str::from_utf8(word).ok()?.parse().ok().filter(|&group| group != UNGROUPED),
+        _ => None,
+    }
+}
+
+/// An array position from an index, written as `word`: 1 is the first of the whole file, -1 the last one before this line.
+fn resolve(index: i64, word: &[u8], what: &str, all: usize, before: usize) -> Result<u32, String> {
     let (defined, from_zero) = if index < 0 { (before, before as i64 + index) } else { (all, index - 1) };
     match u32::try_from(from_zero) {
         Ok(k) if (k as usize) < defined => Ok(k),
         _ if index == 0 => Err(format!("{what} index 0: indices count from 1")),
-        _ => Err(format!("{what} index {index} but only {defined} defined")),
+        // The word and not the number, which long words exceed.
+        _ => Err(format!("{what} index {} but only {defined} defined", text::quoted(word).replace('"', ""))),
     }
 }
 

@@ -65,9 +65,9 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Mesh, LoadError> {
     }
     let mut materials = Materials::default();
     load_libraries(path, &vertices, &mut materials, &mut warnings)?;
-    let triangles = faces::read(path, bytes, &vertices, &materials, &mut warnings)?;
+    let (triangles, smoothing) = faces::read(path, bytes, &vertices, &materials, &mut warnings)?;
     let Vertices { positions, uvs, normals, .. } = vertices;
-    Ok(Mesh { positions, normals, uvs, triangles, materials: materials.list, warnings })
+    Ok(Mesh { positions, normals, uvs, triangles, smoothing, materials: materials.list, warnings })
 }
 
 /// Materials in the order of their first `newmtl`, and their numbers by name.
