@@ -20,7 +20,9 @@ const SCENES: [&str; 5] = [PAPER, DEFAULT, "teapot:16", "teapot:125", "uneven"];
 const ROUNDS: usize = 11;
 /// A setting meets ever more of the rays as long as it takes at most so many times as long as the best so far, both measured in the
 /// time of the self-tuned tree at the same moment, so that a busy machine does not decide.
-const HEATS: [(usize, f64); 3] = [(64, 8.0), (1024, 3.0), (16384, f64::INFINITY)];
+const HEATS: [(usize, f64); 3] = [(64, 8.0), (1024, 3.0), (4096, f64::INFINITY)];
+/// Seconds that a turn of the final may take: settings that are so slow meet fewer rays, evenly spaced.
+const TURN: f64 = 4.0;
 /// Settings that go to the final.
 const FINALISTS: usize = 4;
 /// Brute force checks so many triangle tests' worth of the rays; the rest is checked by the tree that brute force has checked.
@@ -60,6 +62,8 @@ struct Finalist<'a> {
     tree: MidpointTree<'a>,
     /// Its time in the last heat, in times of the self-tuned tree.
     time: f64,
+    /// Seconds a ray in the last heat.
+    per_ray: f64,
 }
 
 /// Holds the contest on one scene and prints it; returns how many answers differ.
@@ -76,7 +80,9 @@ fn contest(scene: &BenchScene, rounds: usize) -> u64 {
          {in_heats} of their answers differ"
     );
 
-    // The final: all in turns, best by median. Answers to all rays first.
+    // The final: all in turns, best by median. Answers first.
+    let slowest = finalists.iter().map(|finalist| finalist.per_ray).fold(0.0, f64::max);
+    let rays = &rays.sample(if slowest > 0.0 { (TURN / slowest) as usize } else { usize::MAX });
     let truth = answers(&tuned, rays);
     let in_final: u64 = finalists.iter().map(|finalist| differing(&truth, &answers(&finalist.tree, rays))).sum();
     println!("finalists: {} rays each, {in_final} answers differ", rays.len());
@@ -178,14 +184,14 @@ fn heats<'a>(tris: &'a TriBuffer, rays: &RaySet, tuned: &BspTree<'_>) -> Heats<'
             continue;
         };
         result.tried += 1;
-        let mut time = f64::INFINITY;
+        let (mut time, mut per_ray) = (f64::INFINITY, 0.0);
         for (k, ((part, truth), (_, slack))) in parts.iter().zip(&truths).zip(HEATS).enumerate() {
             let mut found = room(part);
             let mut once = |query: &dyn RayQuery| seconds(|| trace(query, part, &mut found)).0;
             // The least of three counts; the setting comes last, so that its answers are there to be compared.
             let of_tuned = (0..3).map(|_| once(tuned)).fold(f64::INFINITY, f64::min);
             let of_setting = (0..3).map(|_| once(&tree)).fold(f64::INFINITY, f64::min);
-            time = of_setting / of_tuned;
+            (time, per_ray) = (of_setting / of_tuned, of_setting / part.len().max(1) as f64);
             result.differing += differing(truth, &found);
             if time > slack * best[k] {
                 result.stopped += 1;
@@ -193,7 +199,7 @@ fn heats<'a>(tris: &'a TriBuffer, rays: &RaySet, tuned: &BspTree<'_>) -> Heats<'
             }
             best[k] = best[k].min(time);
         }
-        result.finalists.push(Finalist { setting, tree, time });
+        result.finalists.push(Finalist { setting, tree, time, per_ray });
         result.finalists.sort_by(|a, b| a.time.total_cmp(&b.time));
         result.finalists.truncate(FINALISTS);
     }
