@@ -4,22 +4,25 @@ use super::agree::settings;
 use super::counted::{PerRayVisits, visits};
 use super::options::Options;
 use super::paper::timed;
-use super::rays::{Answer, RaySet, answers, differing, room, trace};
+use super::rays::{RaySet, answers, differing, room, trace};
 use super::scenes::{BenchScene, DEFAULT, PAPER, bench_scene};
 use super::table::lines;
 use super::timing::{Ratio, median, seconds, take_turns};
 use crate::row;
 use gz_app::error::AppError;
 use gz_bsp::{BspTree, Midpoint, MidpointTree};
-use gz_core::{BruteForce, TriBuffer};
+use gz_core::{BruteForce, RayQuery, TriBuffer};
 
 /// The scenes, unless the options name others: the paper's, the default one, teapots of 16 thousand and 1 million triangles, and very
 /// uneven triangles.
 const SCENES: [&str; 5] = [PAPER, DEFAULT, "teapot:16", "teapot:125", "uneven"];
 /// Rounds of the final, unless the options say otherwise.
 const ROUNDS: usize = 11;
-/// A setting meets ever more of the rays as long as it takes at most so many times as long as the best so far.
-const HEATS: [(usize, f64); 3] = [(64, 8.0), (2048, 2.0), (usize::MAX, 1.2)];
+/// A setting meets ever more of the rays as long as it takes at most so many times as long as the best so far, both measured in the
+/// time of the self-tuned tree at the same moment, so that a busy machine does not decide.
+const HEATS: [(usize, f64); 3] = [(64, 8.0), (1024, 3.0), (4096, f64::INFINITY)];
+/// Seconds that a turn of the final may take: settings that are so slow meet fewer rays, evenly spaced.
+const TURN: f64 = 4.0;
 /// Settings that go to the final.
 const FINALISTS: usize = 4;
 /// Brute force checks so many triangle tests' worth of the rays; the rest is checked by the tree that brute force has checked.
@@ -57,7 +60,10 @@ pub fn run(options: &Options) -> Result<(), AppError> {
 struct Finalist<'a> {
     setting: Midpoint,
     tree: MidpointTree<'a>,
-    seconds: f64,
+    /// Its time in the last heat, in times of the self-tuned tree.
+    time: f64,
+    /// Seconds a ray in the last heat.
+    per_ray: f64,
 }
 
 /// Holds the contest on one scene and prints it; returns how many answers differ.
@@ -65,17 +71,22 @@ fn contest(scene: &BenchScene, rounds: usize) -> u64 {
     let BenchScene { name, tris, rays } = scene;
     println!("\n{name}: {} triangles, {} rays as the frame asks them", tris.len(), rays.len());
     let (build, tuned) = seconds(|| BspTree::build(tris));
-    let truth = answers(&tuned, rays);
     let mut wrong = check(tris, rays, &tuned);
 
-    let Heats { finalists, tried, refused, stopped, differing } = heats(tris, rays, &truth);
-    wrong += differing;
+    let Heats { finalists, tried, refused, stopped, differing: in_heats } = heats(tris, rays, &tuned);
+    wrong += in_heats;
     println!(
         "settings: {tried} within the budget ({stopped} of them stopped as too slow on a part of the rays), {refused} over it; \
-         {differing} of their answers differ"
+         {in_heats} of their answers differ"
     );
 
-    // The final: all in turns, best by median.
+    // The final: all in turns, best by median. Answers first.
+    let slowest = finalists.iter().map(|finalist| finalist.per_ray).fold(0.0, f64::max);
+    let rays = &rays.sample(if slowest > 0.0 { (TURN / slowest) as usize } else { usize::MAX });
+    let truth = answers(&tuned, rays);
+    let in_final: u64 = finalists.iter().map(|finalist| differing(&truth, &answers(&finalist.tree, rays))).sum();
+    println!("finalists: {} rays each, {in_final} answers differ", rays.len());
+    wrong += in_final;
     let mut contenders: Vec<Box<dyn FnMut() + '_>> = finalists.iter().map(|f| timed(&f.tree, rays)).collect();
     contenders.push(timed(&tuned, rays));
     let times = take_turns(rounds, &mut contenders);
@@ -157,31 +168,30 @@ struct Heats<'a> {
 }
 
 /// Lets every setting of the grid trace ever more of the rays, until it is clearly slower than the best so far; the fastest go to the
-/// final. Whatever is traced is compared with `truth`, the answers to all rays.
-fn heats<'a>(tris: &'a TriBuffer, rays: &RaySet, truth: &[Answer]) -> Heats<'a> {
+/// final. Whatever is traced is compared with the answers of `tuned`.
+fn heats<'a>(tris: &'a TriBuffer, rays: &RaySet, tuned: &BspTree<'_>) -> Heats<'a> {
     let parts = HEATS.map(|(most, _)| rays.sample(most));
-    let mut truths: Vec<Vec<Answer>> = Vec::new();
-    let tuned = BspTree::build(tris);
-    truths.extend(parts[..parts.len() - 1].iter().map(|part| answers(&tuned, part)));
-    truths.push(truth.to_vec());
+    let truths = parts.each_ref().map(|part| answers(tuned, part));
     let mut best = [f64::INFINITY; HEATS.len()];
     let mut result = Heats { finalists: Vec::new(), tried: 0, refused: 0, stopped: 0, differing: 0 };
 
     // Deep ones first: among them are the fast ones, which stop the others early.
     let mut all: Vec<Midpoint> = settings(Midpoint::default().node_budget).collect();
-    all.sort_by_key(|setting| (setting.max_depth.abs_diff(15), setting.min_size.abs_diff(5)));
+    all.sort_by_key(|setting| (std::cmp::Reverse(setting.max_depth), setting.min_size.abs_diff(5)));
     'settings: for setting in all {
         let Ok(tree) = MidpointTree::build(tris, setting) else {
             result.refused += 1;
             continue;
         };
         result.tried += 1;
-        let mut time = f64::INFINITY;
+        let (mut time, mut per_ray) = (f64::INFINITY, 0.0);
         for (k, ((part, truth), (_, slack))) in parts.iter().zip(&truths).zip(HEATS).enumerate() {
             let mut found = room(part);
-            // Short heats are repeated, the least time counting.
-            let repeats = if part.len() < rays.len() { 3 } else { 1 };
-            time = (0..repeats).map(|_| seconds(|| trace(&tree, part, &mut found)).0).fold(f64::INFINITY, f64::min);
+            let mut once = |query: &dyn RayQuery| seconds(|| trace(query, part, &mut found)).0;
+            // The least of three counts; the setting comes last, so that its answers are there to be compared.
+            let of_tuned = (0..3).map(|_| once(tuned)).fold(f64::INFINITY, f64::min);
+            let of_setting = (0..3).map(|_| once(&tree)).fold(f64::INFINITY, f64::min);
+            (time, per_ray) = (of_setting / of_tuned, of_setting / part.len().max(1) as f64);
             result.differing += differing(truth, &found);
             if time > slack * best[k] {
                 result.stopped += 1;
@@ -189,8 +199,8 @@ fn heats<'a>(tris: &'a TriBuffer, rays: &RaySet, truth: &[Answer]) -> Heats<'a> 
             }
             best[k] = best[k].min(time);
         }
-        result.finalists.push(Finalist { setting, tree, seconds: time });
-        result.finalists.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        result.finalists.push(Finalist { setting, tree, time, per_ray });
+        result.finalists.sort_by(|a, b| a.time.total_cmp(&b.time));
         result.finalists.truncate(FINALISTS);
     }
     result

@@ -101,12 +101,12 @@ pub fn teapot(segments: u32) -> Vec<[GzCoord; 3]> {
     mesh.triangles.iter().map(|tri| tri.position.map(|k| mesh.positions[k as usize])).collect()
 }
 
-/// Very uneven triangles: a fine teapot a tenth of its size on a ground two thousand times as wide, which is a fan of slivers.
+/// Very uneven triangles: a fine teapot a tenth of its size on a ground a hundred times as wide, which is a fan of slivers.
 pub fn uneven() -> Vec<[GzCoord; 3]> {
-    let mut triangles: Vec<[GzCoord; 3]> = teapot(32).into_iter().map(|corners| corners.map(|p| p * 0.1)).collect();
+    let mut triangles: Vec<[GzCoord; 3]> = teapot(24).into_iter().map(|corners| corners.map(|p| p * 0.1)).collect();
     // 1500 slivers from a point below the teapot to a wide rim; a few meet there, the others pass by at some distance.
     const SLIVERS: usize = 1500;
-    const RADIUS: f32 = 600.0;
+    const RADIUS: f32 = 30.0;
     let rim = |k: usize| {
         let angle = std::f64::consts::TAU * k as f64 / SLIVERS as f64;
         GzCoord::new(angle.cos() as f32 * RADIUS, 0.0, angle.sin() as f32 * RADIUS)
