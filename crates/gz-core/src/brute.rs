@@ -1,24 +1,25 @@
 //! Every ray against every triangle: the specification of [`RayQuery`].
 
-use crate::kernel::filter::{Blocks, FilterRay};
-use crate::kernel::{Closest, is_hit, plane_then_inside};
-use crate::simd::with_default_float_control;
-use crate::{ClassMask, GzCoord, GzRay, Hit, Kernel, RayBatch, RayQuery, SimdLevel, TriBuffer, TriId};
+use crate::kernel::{Closest, FilterRay, TriGroup, is_hit, plane_then_inside};
+use crate::simd::{Lanes, Task, dispatch, with_default_float_control};
+use crate::{ClassMask, GzCoord, GzRay, Hit, Kernel, NO_TRI, RayBatch, RayQuery, SimdLevel, TriBuffer, TriId};
 
 /// Every ray against every triangle.
 ///
-/// With the default kernel a conservative filter looks at sixteen triangles at a time and an exact test at what it lets through, so
+/// With the default kernel a conservative filter looks at eight triangles at a time and an exact test at what it lets through, so
 /// the answer is the exact one. Building copies the corners once, 40 bytes a triangle.
 #[derive(Debug)]
 pub struct BruteForce<'a> {
     tris: &'a TriBuffer,
     kernel: Kernel,
     level: SimdLevel,
-    blocks: Blocks,
+    /// All triangles in order; none for a kernel that is not filtered.
+    groups: Vec<TriGroup>,
+    reach: GzCoord,
 }
 
-/// Blocks worked on at a time, for all rays of a batch: 256 triangles, 10 KiB, stay in the first-level cache.
-const GROUP: usize = 16;
+/// Groups worked on at a time, for all rays of a batch: 256 triangles, 10 KiB, stay in the first-level cache.
+const AT_A_TIME: usize = 32;
 
 impl<'a> BruteForce<'a> {
     /// Over `tris`, with the exact kernel.
@@ -28,8 +29,9 @@ impl<'a> BruteForce<'a> {
 
     /// Over `tris`, with a kernel of choice.
     pub fn with_kernel(tris: &'a TriBuffer, kernel: Kernel) -> Self {
-        let filtered: &[[GzCoord; 3]] = if kernel == Kernel::Certified { tris.positions() } else { &[] };
-        Self { tris, kernel, level: SimdLevel::best(), blocks: Blocks::new(filtered) }
+        let ids: Vec<TriId> = if kernel == Kernel::Certified { (0..tris.len() as TriId).collect() } else { Vec::new() };
+        let groups = ids.chunks(8).map(|ids| TriGroup::new(ids, tris.positions())).collect();
+        Self { tris, kernel, level: SimdLevel::best(), groups, reach: tris.bounds().reaches() }
     }
 
     /// The same with another set of vector instructions; where this machine lacks it, the best that it has. Answers stay equal.
@@ -45,26 +47,25 @@ impl<'a> BruteForce<'a> {
 
     /// Bytes held beyond the triangle buffer.
     pub fn bytes(&self) -> usize {
-        self.blocks.bytes()
+        size_of_val(&self.groups[..])
     }
 
-    /// Calls `found(ray number, ray, triangle)` for every triangle of `classes` that the filter cannot exclude, group by group of
-    /// blocks so that all rays use a group while it is in the cache. `found` says whether the ray wants more.
+    /// Calls `found(ray number, ray, triangle)` for every triangle of `classes` that the filter cannot exclude, part by part of
+    /// the groups, so that all rays use a part while it is in the cache. `found` says whether the ray wants more.
     fn each_survivor(&self, rays: &RayBatch<'_>, classes: ClassMask, mut found: impl FnMut(usize, &GzRay, TriId) -> bool) {
         let mut open: Vec<(usize, GzRay, Option<FilterRay>)> = (0..rays.len())
             .map(|i| (i, rays.ray(i)))
             .filter(|(_, ray)| ray.is_valid())
-            .map(|(i, ray)| (i, ray, self.blocks.prepare(&ray)))
+            .map(|(i, ray)| (i, ray, FilterRay::new(&ray, self.reach)))
             .collect();
         let everything = classes == ClassMask::ALL;
         let mut survivors = Vec::new();
-        for from in (0..self.blocks.len()).step_by(GROUP) {
-            let to = (from + GROUP).min(self.blocks.len());
+        for groups in self.groups.chunks(AT_A_TIME) {
             open.retain(|(i, ray, filter)| {
                 survivors.clear();
                 match filter {
-                    Some(filter) => self.blocks.survivors(self.level, filter, from, to, &mut survivors),
-                    None => survivors.extend(self.blocks.triangles(from, to)),
+                    Some(ray) => dispatch(self.level, Filter { groups, ray, survivors: &mut survivors }),
+                    None => survivors.extend(groups.iter().flat_map(TriGroup::ids)),
                 }
                 survivors.iter().all(|&tri| !(everything || classes.has(self.tris.class(tri))) || found(*i, ray, tri))
             });
@@ -83,6 +84,33 @@ impl<'a> BruteForce<'a> {
             }
         }
         best
+    }
+}
+
+/// Collects what the filter cannot exclude.
+struct Filter<'f> {
+    groups: &'f [TriGroup],
+    ray: &'f FilterRay,
+    survivors: &'f mut Vec<TriId>,
+}
+
+impl Task for Filter<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        for group in self.groups {
+            let mut lanes = group.survivors::<L>(self.ray);
+            while lanes != 0 {
+                let tri = group.id(lanes.trailing_zeros() as usize);
+                lanes &= lanes - 1;
+                // Unused lanes are the last.
+                if tri == NO_TRI {
+                    break;
+                }
+                self.survivors.push(tri);
+            }
+        }
     }
 }
 

@@ -181,7 +181,7 @@ impl<Q: Quest> Task for PacketWalk<'_, Q> {
                             rays &= rays - 1;
                             let mut over = false;
                             for group in &tree.groups[first..first + count] {
-                                let mut survivors = group.survivors::<L>(&packet.filters[k]) & 0xff;
+                                let mut survivors = group.survivors::<L>(&packet.filters[k]);
                                 while survivors != 0 && !over {
                                     let lane = survivors.trailing_zeros() as usize;
                                     survivors &= survivors - 1;

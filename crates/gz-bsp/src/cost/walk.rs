@@ -127,7 +127,7 @@ impl<Q: Quest, V: Visits> Task for Walk<'_, Q, V> {
                         visits.leaf();
                         for group in &tree.groups[first..first + count] {
                             visits.group();
-                            let mut survivors = group.survivors::<L>(filter) & 0xff;
+                            let mut survivors = group.survivors::<L>(filter);
                             while survivors != 0 {
                                 let lane = survivors.trailing_zeros() as usize;
                                 survivors &= survivors - 1;

@@ -39,7 +39,8 @@ impl TriGroup {
         self.ids.iter().copied().filter(|&id| id != NO_TRI)
     }
 
-    /// Bit `i` is set unless the line of `ray` surely misses the triangle of lane `i`. Bits of unused lanes mean nothing.
+    /// Bit `i` is set unless the line of `ray` surely misses the triangle of lane `i`. Only the eight lowest bits are
+    /// ever set; those of unused lanes mean nothing.
     ///
     /// The bound is derived in `filter.rs`.
     #[inline(always)]
@@ -59,7 +60,7 @@ impl TriGroup {
         let (least, most) = (u.min(v).min(w), u.max(v).max(w));
         let below = least.plus(bound).below(L::splat(0.0));
         let above = bound.below(most);
-        !(below & above)
+        !(below & above) & 0xff
     }
 
     /// S z - x and the same for y, for one corner of each triangle. Not a closure: those are not compiled for the caller's SIMD level.

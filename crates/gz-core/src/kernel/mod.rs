@@ -3,7 +3,7 @@
 mod certify;
 mod dyadic;
 mod exact;
-pub(crate) mod filter;
+mod filter;
 mod group;
 mod order;
 mod plane;

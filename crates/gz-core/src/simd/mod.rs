@@ -4,8 +4,6 @@
 mod control;
 mod lanes;
 
-use crate::TriId;
-use crate::kernel::filter::{Block, FilterRay, filter_body};
 pub use control::with_default_float_control;
 pub use lanes::{Lanes, Task, dispatch};
 use std::sync::OnceLock;
@@ -17,7 +15,7 @@ pub enum SimdLevel {
     Portable,
     /// AVX2 with fused multiply-add, 8 f32 at a time.
     Avx2,
-    /// AVX-512 F, VL, DQ and BW, 16 f32 at a time.
+    /// AVX-512 F, VL, DQ and BW; [`Lanes`] are eight f32 here too.
     Avx512,
 }
 
@@ -53,29 +51,4 @@ impl SimdLevel {
     pub fn or_best(self) -> Self {
         self.min(Self::best())
     }
-}
-
-/// The conservative filter over `blocks` at `level`: see [`filter_body`].
-pub(crate) fn filter(level: SimdLevel, blocks: &[Block], ray: &FilterRay, first: TriId, out: &mut Vec<TriId>) {
-    match level.or_best() {
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: `or_best` returns no level above `best`, and `available` lists this one only where its features were detected.
-        SimdLevel::Avx512 => unsafe { filter_avx512(blocks, ray, first, out) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        SimdLevel::Avx2 => unsafe { filter_avx2(blocks, ray, first, out) },
-        _ => filter_body(blocks, ray, first, out),
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma")]
-fn filter_avx512(blocks: &[Block], ray: &FilterRay, first: TriId, out: &mut Vec<TriId>) {
-    filter_body(blocks, ray, first, out);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn filter_avx2(blocks: &[Block], ray: &FilterRay, first: TriId, out: &mut Vec<TriId>) {
-    filter_body(blocks, ray, first, out);
 }
