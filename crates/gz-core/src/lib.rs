@@ -46,7 +46,7 @@ pub use kernel::Kernel;
 pub use leave::{leave_surface, side_of};
 pub use matrix::GzMatrix;
 pub use pixel::{GzPixel, TBuffer, TileScratch, trace_tile};
-pub use query::{ClassMask, PerRay, RayBatch, RayQuery};
+pub use query::{ClassMask, PerRay, RayBatch, RayQuery, Targets};
 pub use ray::GzRay;
 pub use simd::{SimdLevel, with_default_float_control};
 pub use stack::{MatrixStack, StackError};
