@@ -9,8 +9,11 @@ use gz_core::kernel::{BUNDLE, LANES, Nearest, PACKETS, RayBundle, Rays, count};
 use gz_core::simd::{Simd, Task, dispatch};
 use gz_core::{ClassMask, GzRay, Hit, PerRay, RayBatch, RayQuery, Targets, TriBuffer, with_default_float_control};
 
+use std::cell::Cell;
+use std::ops::{Deref, DerefMut};
+
 /// Rays that go the same way go together from this number on.
-const COMPANY: u32 = 4;
+const COMPANY: u32 = 8;
 
 /// The first ray of a set.
 #[inline(always)]
@@ -60,6 +63,51 @@ fn of_one(ray: &GzRay) -> RayBatch<'static> {
     RayBatch::new(1, PerRay::One(ray.origin), PerRay::One(ray.direction), PerRay::One(ray.tmin), PerRay::One(ray.tmax))
 }
 
+/// What a batch is worked on with: memory alone, kept by each thread from batch to batch, as filling it anew would take longer than many
+/// a batch.
+struct Desk {
+    bundle: RayBundle,
+    slabs: BundleSlabs,
+    queue: Queue,
+    stack: Stack,
+}
+
+thread_local! {
+    static DESK: Cell<Option<Box<Desk>>> = const { Cell::new(None) };
+}
+
+/// A desk on loan.
+struct Loan(Option<Box<Desk>>);
+
+impl Desk {
+    fn take() -> Loan {
+        let new = || {
+            Box::new(Self { bundle: RayBundle::empty(), slabs: BundleSlabs::empty(), queue: Queue::new(), stack: Stack::new() })
+        };
+        Loan(Some(DESK.take().unwrap_or_else(new)))
+    }
+}
+
+impl Deref for Loan {
+    type Target = Desk;
+
+    fn deref(&self) -> &Desk {
+        self.0.as_ref().expect("a loan holds its desk until it ends")
+    }
+}
+
+impl DerefMut for Loan {
+    fn deref_mut(&mut self) -> &mut Desk {
+        self.0.as_mut().expect("a loan holds its desk until it ends")
+    }
+}
+
+impl Drop for Loan {
+    fn drop(&mut self) {
+        DESK.set(self.0.take());
+    }
+}
+
 struct ClosestTask<'t, V> {
     tree: &'t BspTree<'t>,
     rays: &'t RayBatch<'t>,
@@ -74,11 +122,11 @@ impl<V: Visits> Task for ClosestTask<'_, V> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let Self { tree, rays, targets, hits, visits } = self;
-        let (mut bundle, mut slabs) = (RayBundle::empty(&tree.space), BundleSlabs::empty());
-        let (mut queue, mut stack) = (Queue::new(), Stack::new());
+        let mut desk = Desk::take();
+        let Desk { bundle, slabs, queue, stack } = &mut *desk;
         for (from, hits) in (0..).step_by(BUNDLE).zip(hits.chunks_mut(BUNDLE)) {
             let fit = bundle.gather::<S>(rays, from, hits.len(), &tree.space);
-            slabs.gather::<S>(&bundle, hits.len().div_ceil(LANES), tree.space.reach);
+            slabs.gather::<S>(bundle, hits.len().div_ceil(LANES), tree.space.reach);
             let mut left = fit;
             while let Some((p, lane)) = first(&left) {
                 let company = slabs.company(p, lane, &left);
@@ -86,16 +134,17 @@ impl<V: Visits> Task for ClosestTask<'_, V> {
                     left[p] &= !company[p];
                 }
                 if count(&company) >= COMPANY {
-                    let mut quest = ClosestOf { tree, bundle: &mut bundle, rays, targets: &targets };
-                    tree.send_together::<S, _>(&slabs, slabs.near(p, lane), &company, &mut queue, &mut stack, &mut quest);
-                    continue;
+                    let mut quest = ClosestOf { tree, bundle, rays, targets: &targets };
+                    if tree.send_together::<S, _>(slabs, slabs.near(p, lane), &company, queue, stack, &mut quest) {
+                        continue;
+                    }
                 }
                 for p in 0..PACKETS {
                     let mut few = company[p];
                     while few != 0 {
                         let lane = few.trailing_zeros() as usize;
                         few &= few - 1;
-                        tree.closest_alone::<S>(rays, &mut bundle, &slabs, p, lane, Child::ROOT, &mut stack, &targets, visits);
+                        tree.closest_alone::<S>(rays, bundle, slabs, p, lane, Child::ROOT, stack, &targets, visits);
                     }
                 }
             }
@@ -121,11 +170,11 @@ impl<V: Visits> Task for AnyTask<'_, V> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let Self { tree, rays, targets, occluded, visits } = self;
-        let (mut bundle, mut slabs) = (RayBundle::empty(&tree.space), BundleSlabs::empty());
-        let (mut queue, mut stack) = (Queue::new(), Stack::new());
+        let mut desk = Desk::take();
+        let Desk { bundle, slabs, queue, stack } = &mut *desk;
         for (from, occluded) in (0..).step_by(BUNDLE).zip(occluded.chunks_mut(BUNDLE)) {
             let fit = bundle.gather::<S>(rays, from, occluded.len(), &tree.space);
-            slabs.gather::<S>(&bundle, occluded.len().div_ceil(LANES), tree.space.reach);
+            slabs.gather::<S>(bundle, occluded.len().div_ceil(LANES), tree.space.reach);
             let (mut left, mut blocked) = (fit, [0; PACKETS]);
             while let Some((p, lane)) = first(&left) {
                 let company = slabs.company(p, lane, &left);
@@ -133,16 +182,17 @@ impl<V: Visits> Task for AnyTask<'_, V> {
                     left[p] &= !company[p];
                 }
                 if count(&company) >= COMPANY {
-                    let mut quest = AnyOf { tree, bundle: &bundle, rays, targets: &targets, blocked: &mut blocked };
-                    tree.send_together::<S, _>(&slabs, slabs.near(p, lane), &company, &mut queue, &mut stack, &mut quest);
-                    continue;
+                    let mut quest = AnyOf { tree, bundle, rays, targets: &targets, blocked: &mut blocked };
+                    if tree.send_together::<S, _>(slabs, slabs.near(p, lane), &company, queue, stack, &mut quest) {
+                        continue;
+                    }
                 }
                 for p in 0..PACKETS {
                     let mut few = company[p];
                     while few != 0 {
                         let lane = few.trailing_zeros() as usize;
                         few &= few - 1;
-                        let hit = tree.any_alone::<S>(rays, &bundle, &slabs, p, lane, Child::ROOT, &mut stack, &targets, visits);
+                        let hit = tree.any_alone::<S>(rays, bundle, slabs, p, lane, Child::ROOT, stack, &targets, visits);
                         blocked[p] |= u32::from(hit) << lane;
                     }
                 }

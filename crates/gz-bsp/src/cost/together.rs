@@ -66,6 +66,8 @@ impl Queue {
 
 /// Fewer rays than this go on alone.
 const FEW: u32 = 4;
+/// Rays go together when at the root they cross at least this share, in percent, of the cells that their interval crosses.
+const TOGETHER: u32 = 35;
 
 /// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
 struct Beam {
@@ -128,7 +130,8 @@ fn cross_one<L: Lanes<LANES>>(
 }
 
 impl BspTree<'_> {
-    /// Sends the rays of `company`, which go the same way along each axis as `near` says.
+    /// Sends the rays of `company`, which go the same way along each axis as `near` says; gives up, before anything is tested, when they
+    /// part at the root.
     #[inline(always)]
     pub(super) fn send_together<S: Simd, Q: BundleQuest<S>>(
         &self,
@@ -138,7 +141,7 @@ impl BspTree<'_> {
         queue: &mut Queue,
         stack: &mut Stack,
         quest: &mut Q,
-    ) {
+    ) -> bool {
         let beam = Beam::of::<S>(quest.bundle(), slabs, near, company);
         let mut greatest_limit = greatest::<S>(&quest.bundle().limit, company);
         // Rays whose quest is not over, and those of them that cross the node.
@@ -173,9 +176,15 @@ impl BspTree<'_> {
                     queue.len += 1;
                 }
             }
+            if at == 0 {
+                let crossings: u32 = queue.cells[..queue.len].iter().map(|waiting| count(&waiting.rays)).sum();
+                if crossings * 100 < count(company) * cells as u32 * TOGETHER {
+                    return false;
+                }
+            }
             at = loop {
                 if queue.len == 0 {
-                    return;
+                    return true;
                 }
                 queue.len -= 1;
                 let waiting = &queue.cells[queue.len];
@@ -226,7 +235,7 @@ impl BspTree<'_> {
                 if Q::ORDERED {
                     greatest_limit = greatest::<S>(&quest.bundle().limit, company);
                 } else if live == [0; PACKETS] {
-                    return;
+                    return true;
                 }
             };
         }

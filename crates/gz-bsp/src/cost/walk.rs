@@ -4,6 +4,7 @@
 //! the triangle and so in all boxes above it; each is entered at or before t* and left at or after (`slabs.rs`), so the walk reaches that
 //! leaf unless t* is beyond the best hit so far. A node is left out only when its entry is beyond that hit, rounded up.
 
+use super::build::MOST_LEVELS;
 use super::slabs::{BundleSlabs, Slabs};
 use super::wide::{BspTree, Child, Target};
 use crate::Visits;
@@ -11,8 +12,58 @@ use gz_core::kernel::{Candidates, FilterRay, Nearest, RayBundle, is_hit};
 use gz_core::simd::{Lanes, Simd};
 use gz_core::{GzRay, NO_TRI, RayBatch, Targets, TriId};
 
-/// What is still to be visited: a cell and the distance at which the ray enters it.
-pub(super) type Stack = Vec<(Child, f32)>;
+/// What is still to be visited: cells and the distances at which the ray enters them. Made once.
+pub(super) struct Stack {
+    cells: Box<[(Child, f32); STACK]>,
+    len: usize,
+}
+
+/// Cells that can wait: a power of two, above seven for each level of the deepest tree.
+const STACK: usize = 1024;
+const _: () = assert!(7 * MOST_LEVELS < STACK);
+
+impl Stack {
+    pub(super) fn new() -> Self {
+        Self { cells: Box::new([(Child::NONE, 0.0); STACK]), len: 0 }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, child: Child, entry: f32) {
+        self.cells[self.len % STACK] = (child, entry);
+        self.len += 1;
+    }
+
+    /// The cell pushed last that is entered before `limit`; forgets all after it.
+    #[inline(always)]
+    fn pop(&mut self, limit: f32) -> Option<Child> {
+        while self.len != 0 {
+            self.len -= 1;
+            let (child, entry) = self.cells[self.len % STACK];
+            if entry <= limit {
+                return Some(child);
+            }
+        }
+        None
+    }
+
+    /// Pushes three cells or more, the farthest first.
+    #[inline(always)]
+    fn push_sorted(&mut self, children: &[Child; 8], entries: &[f32; 8], mut crossed: u32) {
+        let base = self.len;
+        while crossed != 0 {
+            let slot = crossed.trailing_zeros() as usize & 7;
+            crossed &= crossed - 1;
+            let entry = entries[slot];
+            let mut k = self.len;
+            while k > base && self.cells[(k - 1) % STACK].1 < entry {
+                self.cells[k % STACK] = self.cells[(k - 1) % STACK];
+                k -= 1;
+            }
+            self.cells[k % STACK] = (children[slot], entry);
+            self.len += 1;
+        }
+    }
+}
 
 /// What a walk is after.
 pub(super) trait Quest {
@@ -137,55 +188,66 @@ impl BspTree<'_> {
         visits: &mut impl Visits,
     ) {
         let mut limit = quest.start();
-        stack.clear();
-        stack.push((child, f32::NEG_INFINITY));
+        stack.len = 0;
+        let mut child = child;
         loop {
-            // Leaves off the stack are tested on the spot, until a node comes up.
-            let at = loop {
-                let Some((child, entry)) = stack.pop() else { return };
-                if entry > limit {
-                    continue;
+            match child.target() {
+                Target::Node(index) => {
+                    visits.node();
+                    let node = &self.nodes[index];
+                    let (entries, crossed) = slabs.cross::<S::Eight>(node, limit);
+                    let others = crossed & crossed.wrapping_sub(1);
+                    if crossed != 0 {
+                        let first = crossed.trailing_zeros() as usize & 7;
+                        child = node.children[first];
+                        if others == 0 {
+                            continue;
+                        }
+                        let entries = entries.array();
+                        if others & (others - 1) == 0 {
+                            let second = others.trailing_zeros() as usize & 7;
+                            let mut far = node.children[second];
+                            self.prefetch::<S>(far);
+                            if entries[second] < entries[first] {
+                                std::mem::swap(&mut child, &mut far);
+                            }
+                            stack.push(far, entries[first].max(entries[second]));
+                            continue;
+                        }
+                        let mut rest = others;
+                        while rest != 0 {
+                            self.prefetch::<S>(node.children[rest.trailing_zeros() as usize & 7]);
+                            rest &= rest - 1;
+                        }
+                        stack.push_sorted(&node.children, &entries, crossed);
+                    }
                 }
-                match child.target() {
-                    Target::Node(index) => break index,
-                    Target::Groups { first, count } => {
-                        visits.leaf();
-                        for group in &self.groups[first..first + count] {
-                            visits.group();
-                            let Some(found) = group.candidates::<S>(filter) else { continue };
-                            let mut possible = found.possible;
-                            while possible != 0 {
-                                let lane = possible.trailing_zeros() as usize;
-                                possible &= possible - 1;
-                                let tri = group.id(lane);
-                                if tri == NO_TRI {
-                                    break;
-                                }
-                                visits.test(tri);
-                                match quest.take(&found, lane, tri) {
-                                    Some(new) => limit = new,
-                                    None => return,
-                                }
+                Target::Groups { first, count } => {
+                    visits.leaf();
+                    for group in &self.groups[first..first + count] {
+                        visits.group();
+                        let Some(found) = group.candidates::<S>(filter) else { continue };
+                        let mut possible = found.possible;
+                        while possible != 0 {
+                            let lane = possible.trailing_zeros() as usize & 7;
+                            possible &= possible - 1;
+                            let tri = group.id(lane);
+                            if tri == NO_TRI {
+                                break;
+                            }
+                            visits.test(tri);
+                            match quest.take(&found, lane, tri) {
+                                Some(new) => limit = new,
+                                None => return,
                             }
                         }
                     }
                 }
-            };
-            visits.node();
-            let node = &self.nodes[at];
-            let (entries, mut crossed) = slabs.cross::<S::Eight>(node, limit);
-            if crossed != 0 {
-                let entries = entries.array();
-                let base = stack.len();
-                while crossed != 0 {
-                    let slot = crossed.trailing_zeros() as usize;
-                    crossed &= crossed - 1;
-                    let child = node.children[slot];
-                    self.prefetch::<S>(child);
-                    stack.push((child, entries[slot]));
-                }
-                sort_far_first(&mut stack[base..]);
             }
+            child = match stack.pop(limit) {
+                Some(next) => next,
+                None => return,
+            };
         }
     }
 
@@ -217,19 +279,5 @@ impl BspTree<'_> {
                 }
             }
         }
-    }
-}
-
-/// Sorts by falling entry: the nearest comes off the stack first. One to eight elements.
-#[inline(always)]
-fn sort_far_first(cells: &mut [(Child, f32)]) {
-    for i in 1..cells.len() {
-        let cell = cells[i];
-        let mut k = i;
-        while k > 0 && cells[k - 1].1 < cell.1 {
-            cells[k] = cells[k - 1];
-            k -= 1;
-        }
-        cells[k] = cell;
     }
 }

@@ -23,7 +23,8 @@ struct InDoubles<F> {
 impl<F: Doubles> InDoubles<F> {
     #[inline(always)]
     fn of(solution: &Solution<F>) -> Self {
-        let (Bounded { value: t, error }, ([v, w], weight_error)) = (solution.t(), solution.weights());
+        let inverse = solution.inverse();
+        let (Bounded { value: t, error }, ([v, w], weight_error)) = (solution.t(inverse), solution.weights(inverse));
         let (v, w) = (cut(v), cut(w));
         // A weight is good to 1 ulp of f32 when it errs by less than a quarter of one, and to 2^-40 when by less than 2^-41.
         let may_err = v.or_less(w).times(F::splat(f64::from(f32::EPSILON) / 4.0)).or_more(F::splat(HALF_SMALLEST));
@@ -113,7 +114,7 @@ const WEIGHT_ERROR: f64 = 1.0 / (1u64 << 36) as f64;
 /// one that does not, (1, 0, 0).
 pub fn hit_weights(ray: &GzRay, corners: &[GzCoord; 3]) -> [f64; 3] {
     let solution = Solution::of_one(ray, corners);
-    let ([v, w], error) = solution.weights();
+    let ([v, w], error) = solution.weights(solution.inverse());
     if solution.certainty() > 0.0 && error <= WEIGHT_ERROR {
         return [1.0 - v - w, v, w].map(|x| x.clamp(0.0, 1.0));
     }

@@ -65,8 +65,8 @@ pub struct RayBundle {
 const NOTHING: Each = [[0.0; LANES]; PACKETS];
 
 impl RayBundle {
-    /// Without rays, for triangles in `space`.
-    pub fn empty(space: &FilterSpace) -> Self {
+    /// Without rays.
+    pub fn empty() -> Self {
         Self {
             origin: [NOTHING; 3],
             direction: [NOTHING; 3],
@@ -82,7 +82,7 @@ impl RayBundle {
             margin: Margin::default(),
             lost: 0.0,
             common_origin: false,
-            scale: space.scale.to_array(),
+            scale: [1.0; 3],
             from: 0,
         }
     }
@@ -92,6 +92,7 @@ impl RayBundle {
     #[inline(always)]
     pub fn gather<S: Simd>(&mut self, rays: &RayBatch<'_>, from: usize, len: usize, space: &FilterSpace) -> Rays {
         self.from = from;
+        self.scale = space.scale.to_array();
         self.found = [0; PACKETS];
         self.common_origin = matches!(rays.origin, PerRay::One(_));
         let mut fit = [0; PACKETS];

@@ -52,7 +52,7 @@ pub(crate) fn certify(ray: &GzRay, corners: &[GzCoord; 3]) -> Verdict {
     if signs.contains(&0) || solution.certainty() <= 0.0 {
         return Verdict::Unsure;
     }
-    let Bounded { value: t, error } = solution.t();
+    let Bounded { value: t, error } = solution.t(solution.inverse());
     let (lo, hi) = (t - error, t + error);
     let (tmin, tmax) = (f64::from(ray.tmin), f64::from(ray.tmax));
     if hi <= tmin || lo >= tmax {

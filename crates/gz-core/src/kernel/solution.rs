@@ -81,22 +81,28 @@ impl<F: Doubles> Solution<F> {
         self.d.value.abs().minus(F::splat(4.0).times(self.d.error))
     }
 
-    /// t = M / D and how far it may be off, where D is certain: 1.5 leaves room for the roundings of the bound and 2u |t| for that of the
-    /// quotient.
+    /// 1 / D, where D is certain.
     #[inline(always)]
-    pub(super) fn t(&self) -> Bounded<F> {
-        let t = self.m.value.over(self.d.value);
-        let from_both = self.m.error.plus(t.abs().times(self.d.error)).over(self.d.value.abs());
-        Bounded { value: t, error: F::splat(1.5).times(from_both).plus(F::splat(2.0 * U).times(t.abs())) }
+    pub(super) fn inverse(&self) -> F {
+        F::splat(1.0).over(self.d.value)
+    }
+
+    /// t = M / D and how far it may be off, where D is certain: 1.5 leaves room for the roundings of the bound and 3u |t| for those of the
+    /// reciprocal and the product.
+    #[inline(always)]
+    pub(super) fn t(&self, inverse: F) -> Bounded<F> {
+        let t = self.m.value.times(inverse);
+        let from_both = self.m.error.plus(t.abs().times(self.d.error)).times(inverse.abs());
+        Bounded { value: t, error: F::splat(1.5).times(from_both).plus(F::splat(3.0 * U).times(t.abs())) }
     }
 
     /// V / D and W / D, before they are cut to [0, 1], and how far each and their sum may be off, where D is certain.
     #[inline(always)]
-    pub(super) fn weights(&self) -> ([F; 2], F) {
-        // As for t, with |V/D| at most 1, the same for W, and U with the errors of both; 4u for the quotients and the sum.
+    pub(super) fn weights(&self, inverse: F) -> ([F; 2], F) {
+        // As for t, with |V/D| at most 1, the same for W, and U with the errors of both; 6u for the quotients and the sum.
         let errors = self.v.error.plus(self.w.error).plus(F::splat(2.0).times(self.d.error));
-        let error = F::splat(1.5).times(errors).over(self.d.value.abs()).plus(F::splat(4.0 * U));
-        ([self.v.value.over(self.d.value), self.w.value.over(self.d.value)], error)
+        let error = F::splat(1.5).times(errors).times(inverse.abs()).plus(F::splat(6.0 * U));
+        ([self.v.value.times(inverse), self.w.value.times(inverse)], error)
     }
 }
 
