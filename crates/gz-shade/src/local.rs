@@ -111,7 +111,7 @@ impl Lighting {
                 Lit::Adds { color, start } => (color, start),
             };
             if let Some(start) = start {
-                self.rays.push(start.origin, start.direction, start.tmax);
+                self.rays.push(start.origin, start.direction, start.tmax, item.at.tri);
             }
             self.addends.push(Addend { item: id as u32, color });
         }

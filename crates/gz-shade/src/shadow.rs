@@ -6,7 +6,7 @@
 
 use crate::{Scene, ShadowRule};
 use glam::DVec3;
-use gz_core::{ClassMask, GzColor, GzCoord, Hit, PerRay, RayBatch, RayQuery, TriClass};
+use gz_core::{ClassMask, GzColor, GzCoord, Hit, NO_TRI, PerRay, RayBatch, RayQuery, TriClass, TriId};
 
 /// A ray from a surface to a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +25,8 @@ pub(crate) struct ShadowRays {
     pub(crate) origins: Vec<DVec3>,
     pub(crate) directions: Vec<GzCoord>,
     pub(crate) tmax: Vec<f32>,
+    /// The triangles that they leave.
+    pub(crate) leaves: Vec<TriId>,
 }
 
 impl ShadowRays {
@@ -33,22 +35,25 @@ impl ShadowRays {
         self.origins.clear();
         self.directions.clear();
         self.tmax.clear();
+        self.leaves.clear();
     }
 
-    /// Adds a ray.
-    pub(crate) fn push(&mut self, origin: DVec3, direction: GzCoord, tmax: f32) {
+    /// Adds a ray that leaves triangle `leaves` by [`gz_core::leave_surface`].
+    pub(crate) fn push(&mut self, origin: DVec3, direction: GzCoord, tmax: f32, leaves: TriId) {
         self.origins.push(origin);
         self.directions.push(direction);
         self.tmax.push(tmax);
+        self.leaves.push(leaves);
     }
 
     /// The rays as a batch. `common_direction`: all directions are equal, and without end.
     fn batch(&self, common_direction: bool) -> RayBatch<'_> {
         let (len, origins) = (self.origins.len(), PerRay::Each(&self.origins[..]));
-        match self.directions.first() {
+        let batch = match self.directions.first() {
             Some(&direction) if common_direction => RayBatch::unbounded(len, origins, PerRay::One(direction)),
             _ => RayBatch::new(len, origins, PerRay::Each(&self.directions), PerRay::One(0.0), PerRay::Each(&self.tmax)),
-        }
+        };
+        batch.leaving(&self.leaves)
     }
 }
 
@@ -63,7 +68,7 @@ fn blockers(scene: &Scene) -> ClassMask {
 /// What one shadow ray finds: the share of the light that reaches its start, and the first triangle that lets none through, if any.
 pub(crate) fn look(scene: &Scene, query: &dyn RayQuery, ray: &ShadowRay) -> (GzColor, Hit) {
     let mut rays = ShadowRays::default();
-    rays.push(ray.origin, ray.direction, ray.tmax);
+    rays.push(ray.origin, ray.direction, ray.tmax, NO_TRI);
     let mut shadows = Shadows::default();
     shadows.trace(scene, query, &rays, false);
     let mut blocker = [Hit::MISS];
@@ -109,7 +114,7 @@ impl Shadows {
             self.rest.clear();
             for &k in &self.on_way {
                 let k = k as usize;
-                self.rest.push(rays.origins[k], rays.directions[k], rays.tmax[k]);
+                self.rest.push(rays.origins[k], rays.directions[k], rays.tmax[k], rays.leaves[k]);
             }
             let batch = RayBatch::new(
                 self.on_way.len(),
@@ -117,7 +122,8 @@ impl Shadows {
                 PerRay::Each(&self.rest.directions),
                 PerRay::Each(&self.tmin),
                 PerRay::Each(&self.rest.tmax),
-            );
+            )
+            .leaving(&self.rest.leaves);
             self.hits.clear();
             self.hits.resize(self.on_way.len(), Hit::MISS);
             query.closest_hits(&batch, ClassMask::only(TriClass::Glass), &mut self.hits);

@@ -5,7 +5,7 @@ use crate::crowd::Crowd;
 use crate::media::{Media, MediaStacks};
 use crate::{FrameStats, GlassBlend, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
-use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery};
+use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TriId};
 
 /// What kind of ray it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +82,7 @@ pub(crate) struct Tree {
     crowd: Crowd,
     origins: Vec<DVec3>,
     directions: Vec<GzCoord>,
+    leaves: Vec<TriId>,
     hits: Vec<Hit>,
 }
 
@@ -141,10 +142,12 @@ impl Tree {
         let first = self.nodes.len();
         self.origins.clear();
         self.directions.clear();
+        self.leaves.clear();
         for branch in self.branches.iter().filter(|branch| branch.kind == kind) {
             let parent = &self.nodes[branch.parent as usize];
             self.origins.push(branch.ray.origin);
             self.directions.push(branch.ray.direction);
+            self.leaves.push(parent.hit.tri);
             self.nodes.push(Node {
                 parent: branch.parent,
                 kind,
@@ -159,7 +162,7 @@ impl Tree {
         if count == 0 {
             return 0;
         }
-        let rays = RayBatch::unbounded(count, PerRay::Each(&self.origins), PerRay::Each(&self.directions));
+        let rays = RayBatch::unbounded(count, PerRay::Each(&self.origins), PerRay::Each(&self.directions)).leaving(&self.leaves);
         self.hits.clear();
         self.hits.resize(count, Hit::MISS);
         query.closest_hits(&rays, ClassMask::ALL, &mut self.hits);

@@ -3,7 +3,7 @@
 use super::recorder::Recorder;
 use glam::{DVec2, DVec3};
 use gz_app::error::AppError;
-use gz_core::{ClassMask, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TileGrid, TriId, leave_surface};
+use gz_core::{ClassMask, GzCoord, GzRay, Hit, NO_TRI, PerRay, RayBatch, RayQuery, TileGrid, TriId, leave_surface};
 use gz_shade::reflection::reflect;
 use gz_shade::{MaterialKind, Scene, SceneNeeds, shade_frame};
 use rayon::prelude::*;
@@ -51,23 +51,24 @@ pub struct Asked {
     pub classes: ClassMask,
     /// Whether only *that* something is hit was asked, and not what.
     pub any: bool,
-    /// The triangle that each ray leaves; empty where that is not known.
-    pub(super) leaves: Vec<Option<TriId>>,
+    /// The triangle that each ray leaves, [`NO_TRI`] for none; empty where that is not known.
+    pub(super) leaves: Vec<TriId>,
 }
 
 impl Asked {
     /// The batch to ask.
     pub fn batch(&self) -> RayBatch<'_> {
-        RayBatch::new(self.len, self.origin.view(), self.direction.view(), self.tmin.view(), self.tmax.view())
+        let batch = RayBatch::new(self.len, self.origin.view(), self.direction.view(), self.tmin.view(), self.tmax.view());
+        if self.leaves.is_empty() { batch } else { batch.leaving(&self.leaves) }
     }
 
     /// The triangle that ray `i` leaves, where it is known.
     pub fn leaves(&self, i: usize) -> Option<TriId> {
-        self.leaves.get(i).copied().flatten()
+        self.leaves.get(i).copied().filter(|&tri| tri != NO_TRI)
     }
 
     /// Rays without end, each with the triangle that it leaves.
-    fn unbounded(origin: Values<DVec3>, direction: Values<GzCoord>, leaves: Vec<Option<TriId>>) -> Self {
+    fn unbounded(origin: Values<DVec3>, direction: Values<GzCoord>, leaves: Vec<TriId>) -> Self {
         let (tmin, tmax) = (Values::One(0.0), Values::One(f32::INFINITY));
         Self { len: leaves.len(), origin, direction, tmin, tmax, classes: ClassMask::ALL, any: false, leaves }
     }
@@ -213,7 +214,7 @@ pub fn paper_rays(scene: &Scene, query: &dyn RayQuery) -> RaySet {
     let mut set = RaySet::default();
     for tile in TileGrid::whole(scene.camera.width(), scene.camera.height(), TILE).tiles() {
         let mut level: Vec<(GzRay, Option<TriId>)> =
-            tile.pixels().map(|(i, j)| (scene.camera.ray(i, j, DVec2::ZERO), None)).collect();
+            tile.in_squares().map(|(i, j)| (scene.camera.ray(i, j, DVec2::ZERO), None)).collect();
         for depth in 0..=3 {
             if level.is_empty() {
                 break;
@@ -236,7 +237,7 @@ fn level_batch(level: &[(GzRay, Option<TriId>)], primary: bool) -> Asked {
         Some((first, _)) if primary => Values::One(first.origin),
         _ => Values::Each(level.iter().map(|(ray, _)| ray.origin).collect()),
     };
-    Asked::unbounded(origins, directions, level.iter().map(|(_, leaves)| *leaves).collect())
+    Asked::unbounded(origins, directions, level.iter().map(|(_, leaves)| leaves.unwrap_or(NO_TRI)).collect())
 }
 
 /// The shadow rays of `hits`, one batch a light.
@@ -247,7 +248,7 @@ fn shadow_batches(scene: &Scene, hits: &[Hit], set: &mut RaySet) {
         for hit in hits.iter().filter(|hit| hit.is_hit()) {
             if let Some(origin) = leave_surface(scene.tris.position(hit.tri), hit.weights(), direction) {
                 origins.push(origin);
-                leaves.push(Some(hit.tri));
+                leaves.push(hit.tri);
             }
         }
         if !origins.is_empty() {

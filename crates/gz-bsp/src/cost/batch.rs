@@ -1,4 +1,6 @@
 //! The questions, a bundle of rays at a time.
+// Packets, axes and lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
 
 use super::slabs::BundleSlabs;
 use super::together::{AnyOf, ClosestOf, Queue};

@@ -4,6 +4,8 @@
 //! one; the rays that cross it go on with it as a set. Entries and exits are computed as `slabs.rs` says, with the same constants, so
 //! what is said there of lost hits holds ray by ray. For the interval, rounding is monotone: its entry, rounded twice, is at most what any
 //! ray's would be if rounded twice, and that is at most the true one; so with its exit.
+// Packets, axes and lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
 
 use super::slabs::BundleSlabs;
 use super::walk::Stack;

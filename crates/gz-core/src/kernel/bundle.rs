@@ -1,4 +1,6 @@
 //! Up to sixty-four rays that are asked together.
+// Packets, axes and lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
 
 use super::answer::EightPairs;
 use super::filter::{FilterRay, GREATEST_DIRECTION, GREATEST_REACH, Margin};

@@ -1,4 +1,6 @@
 //! A bundle's rays against a group's triangles: triangle by triangle for sixteen rays at a time, ray by ray where few are left.
+// Packets, axes and lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
 
 use super::bundle::{LANES, PACKETS, RayBundle, Rays};
 use super::filter::{Judged, distance, judge};

@@ -1,4 +1,6 @@
 //! AVX2 and AVX-512.
+// Packets, axes and lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
 
 use super::lanes::{Doubles, EightDoubles, Lanes, Pair, Simd, Task};
 use std::arch::x86_64::*;
