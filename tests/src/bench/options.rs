@@ -34,7 +34,7 @@ pub struct Options {
     pub limit: Option<usize>,
 }
 
-const USAGE: &str = "bench paper|grid|brute|scale|agree [--scene NAME|FILE|teapot:SEGMENTS|uneven] [--threads N] [--rounds N] [--rays N] [--limit TRIANGLES]";
+const USAGE: &str = "bench paper|grid|brute|scale|agree [--scene NAME|FILE|teapot:SEGMENTS|uneven] [--threads N] [--rounds N] [--rays N] [--limit TRIANGLES], or bench peers";
 
 impl Options {
     /// Reads the words.
