@@ -6,7 +6,9 @@
 pub mod agree;
 pub mod brute;
 pub mod counted;
+pub mod front;
 pub mod grid;
+pub mod memory;
 pub mod options;
 pub mod paper;
 pub mod peers;
@@ -41,6 +43,8 @@ pub fn run(words: &[String]) -> Result<(), AppError> {
         Bench::Grid => grid::run(&options),
         Bench::Brute => brute::run(&options),
         Bench::Scale => scale::run(&options),
+        Bench::Front => front::run(&options),
+        Bench::Memory => memory::run(&options),
         Bench::Agree => agree::run(&options),
     })
 }
