@@ -20,11 +20,13 @@ pub mod pfm;
 pub mod picture;
 pub mod pixel_report;
 pub mod progress;
+pub mod random_lines;
 pub mod render;
 pub mod sheet;
 pub mod stats;
 pub mod teapot;
 pub mod threads;
+pub mod tree_report;
 pub mod view;
 
 /// The README's Rust code, run with the documentation's tests.

@@ -3,7 +3,8 @@
 use super::recorder::Recorder;
 use glam::{DVec2, DVec3};
 use gz_app::error::AppError;
-use gz_core::{ClassMask, GzCoord, GzRay, Hit, NO_TRI, PerRay, RayBatch, RayQuery, TileGrid, TriId, leave_surface};
+use gz_app::random_lines::RandomLines;
+use gz_core::{Bounds, ClassMask, GzCoord, GzRay, Hit, NO_TRI, PerRay, RayBatch, RayQuery, TileGrid, TriId, leave_surface};
 use gz_shade::reflection::reflect;
 use gz_shade::{MaterialKind, Scene, SceneNeeds, shade_frame};
 use rayon::prelude::*;
@@ -74,6 +75,9 @@ impl Asked {
     }
 }
 
+/// Lines in a batch of random ones.
+const RANDOM_BATCH: usize = 1024;
+
 /// Rays in the order in which they are asked, batch by batch.
 #[derive(Clone, Debug, Default)]
 pub struct RaySet {
@@ -131,8 +135,38 @@ impl RaySet {
     /// The rays of the camera alone: those that start at one point and ask what they hit.
     #[must_use]
     pub fn primary(&self) -> Self {
-        let primary = |asked: &&Asked| !asked.any && matches!(asked.origin, Values::One(_));
-        Self { batches: self.batches.iter().filter(primary).cloned().collect() }
+        self.only(|asked| !asked.any && matches!(asked.origin, Values::One(_)))
+    }
+
+    /// Those that ask only whether something is in the way.
+    #[must_use]
+    pub fn shadow(&self) -> Self {
+        self.only(|asked| asked.any)
+    }
+
+    /// Those that leave a surface and ask what they hit: of mirrors and glass.
+    #[must_use]
+    pub fn bounced(&self) -> Self {
+        // Shadow rays on their way through glass ask for hits too, but of glass alone.
+        self.only(|asked| !asked.any && asked.classes == ClassMask::ALL && matches!(asked.origin, Values::Each(_)))
+    }
+
+    fn only(&self, wanted: impl Fn(&Asked) -> bool) -> Self {
+        Self { batches: self.batches.iter().filter(|asked| wanted(asked)).cloned().collect() }
+    }
+
+    /// `n` lines through `bounds`, none more likely than another, the same each time; none when the box has no area.
+    pub fn random(bounds: &Bounds, n: usize) -> Self {
+        let lines: Vec<GzRay> = RandomLines::through(bounds, 1).into_iter().flatten().take(n).collect();
+        let batch = |lines: &[GzRay]| Asked {
+            tmin: Values::One(f32::NEG_INFINITY),
+            ..Asked::unbounded(
+                Values::Each(lines.iter().map(|line| line.origin).collect()),
+                Values::Each(lines.iter().map(|line| line.direction).collect()),
+                vec![NO_TRI; lines.len()],
+            )
+        };
+        Self { batches: lines.chunks(RANDOM_BATCH).map(batch).collect() }
     }
 
     /// Each ray with the triangle that it leaves.
