@@ -67,7 +67,7 @@ impl Setting {
     fn build(self, tris: &TriBuffer) -> Option<(Box<dyn RayQuery + '_>, usize)> {
         match self {
             Self::Cut(cut) => {
-                let tree = BspTree::with_cost(tris, CostModel { cut });
+                let tree = BspTree::with_cost(tris, CostModel { cut, ..CostModel::default() });
                 let bytes = tree.bytes();
                 Some((Box::new(tree), bytes))
             }

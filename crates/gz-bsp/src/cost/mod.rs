@@ -1,8 +1,8 @@
 //! The tree that tunes itself: no MAX_DEPTH, no MIN_SIZE.
 //!
-//! It is the paper's tree with other planes: a node is still cut by an axis-aligned plane and a triangle still stands in every leaf
-//! that it reaches into. Where to cut and when to stop is decided by expected cost, boxes are tight around what a cell holds, which
-//! prices and cuts off empty space, and up to seven cuts are kept as one node of eight cells.
+//! It is the paper's tree with other planes: a node is still cut by an axis-aligned plane, and a triangle that crosses it stands on both
+//! sides, or on one whose box then grows around it where that is cheaper. Where to cut and when to stop is decided by expected cost,
+//! boxes are tight around what a cell holds, which prices and cuts off empty space, and up to seven cuts are kept as one node of eight cells.
 
 mod batch;
 mod build;
