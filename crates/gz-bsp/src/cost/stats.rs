@@ -88,7 +88,7 @@ impl BspTree<'_> {
             let node = &self.nodes[at];
             for (slot, child) in node.children.iter().enumerate().filter(|(_, child)| !child.is_none()) {
                 let target = child.target();
-                see(&tree.space.shrink(&node.bounds(slot)), depth, target);
+                see(&self.space.shrink(&node.bounds(slot)), depth, target);
                 if let Target::Node(index) = target {
                     open.push((index, depth + 1));
                 }
