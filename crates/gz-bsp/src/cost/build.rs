@@ -4,6 +4,9 @@ use super::clip::Reference;
 use super::split::{Bins, CostModel, Cut, groups};
 use super::tight::TightBox;
 use gz_core::{Bounds, GzCoord, TriBuffer, TriId};
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+use std::cell::RefCell;
 
 /// A node while building: its tight box and two halves, or triangles.
 pub(crate) struct Cell {
@@ -26,6 +29,9 @@ const ALONE: usize = 4096;
 #[cfg(feature = "rayon")]
 const SHARED_BINNING: usize = 1 << 16;
 
+/// Up to so many triangles are a leaf without a look at where to cut: they share a group.
+const WORTH_A_LOOK: usize = 4;
+
 struct Builder<'a> {
     positions: &'a [[GzCoord; 3]],
     model: CostModel,
@@ -34,7 +40,11 @@ struct Builder<'a> {
 /// Cuts `tris` into cells. The same for any number of threads: every decision depends on one cell's references alone.
 pub(crate) fn build(tris: &TriBuffer, model: CostModel) -> Cell {
     let positions = tris.positions();
-    let references: Vec<Reference> = (0..).zip(positions).map(|(tri, corners)| Reference::whole(tri, corners)).collect();
+    let whole = |(tri, corners): (usize, &[GzCoord; 3])| Reference::whole(tri as TriId, corners);
+    #[cfg(feature = "rayon")]
+    let references: Vec<Reference> = positions.par_iter().enumerate().map(whole).collect();
+    #[cfg(not(feature = "rayon"))]
+    let references: Vec<Reference> = positions.iter().enumerate().map(whole).collect();
     // Deep enough for every useful cut, shallow enough that no input makes it endless.
     let depth = most_cuts(references.len());
     // What cutting may add: a fixed multiple of the triangles, shared out among the halves of each cut.
@@ -95,8 +105,8 @@ impl Builder<'_> {
 
     /// The cheapest plane, when cutting there is expected to be cheaper than a leaf.
     fn worthwhile_cut(&self, part: &Part) -> Option<Cut> {
-        let bounds = part.bounds.as_ref().filter(|_| part.len() > 1)?;
-        let cut = bin(&part.references, bounds).cheapest(bounds, &self.model)?;
+        let bounds = part.bounds.as_ref().filter(|_| part.len() > WORTH_A_LOOK)?;
+        let cut = cheapest(&part.references, bounds, &self.model)?;
         (cut.cost < bounds.area() * groups(part.len() as u32)).then_some(cut)
     }
 
@@ -106,14 +116,9 @@ impl Builder<'_> {
         let Cut { axis, plane, .. } = cut;
         let is_lower = |r: &Reference| r.bounds.max(axis) <= plane;
         let is_upper = |r: &Reference| r.bounds.min(axis) >= plane;
-        let (mut below, mut above) = (0, 0);
-        for r in references {
-            let lower = is_lower(r);
-            below += usize::from(lower || !is_upper(r));
-            above += usize::from(!lower);
-        }
-        let (mut lower, mut upper) = (Part::with_capacity(below), Part::with_capacity(above));
-        let mut crossing = Vec::with_capacity(below + above - references.len());
+        // Room that is not used is memory that is not touched.
+        let (mut lower, mut upper) = (Part::with_capacity(references.len()), Part::with_capacity(references.len()));
+        let mut crossing = Vec::new();
         for r in references {
             if is_lower(r) {
                 lower.push(*r);
@@ -206,22 +211,29 @@ fn join(_size: usize, a: impl FnOnce() -> Cell, b: impl FnOnce() -> Cell) -> [Ce
     [a(), b()]
 }
 
-fn bin(references: &[Reference], bounds: &TightBox) -> Bins {
-    let some = |part: &[Reference]| {
-        let mut bins = Bins::over(bounds, references.len());
-        part.iter().for_each(|r| bins.add(r));
-        bins
-    };
+thread_local! {
+    /// Memory alone, kept from cell to cell.
+    static BINS: RefCell<Box<Bins>> = RefCell::new(Box::new(Bins::new()));
+}
+
+/// The cheapest plane for `references`; `None` when no plane parts anything.
+fn cheapest(references: &[Reference], bounds: &TightBox, model: &CostModel) -> Option<Cut> {
     #[cfg(feature = "rayon")]
     if references.len() > SHARED_BINNING {
-        use rayon::prelude::*;
-        return references.par_chunks(SHARED_BINNING / 4).map(some).reduce(
-            || Bins::over(bounds, references.len()),
-            |mut a, b| {
-                a.merge(&b);
-                a
-            },
-        );
+        let some = |part: &[Reference]| {
+            let mut bins = Box::new(Bins::new());
+            bins.reset(bounds, references.len());
+            bins.add_all(part);
+            bins
+        };
+        let merged = references.par_chunks(SHARED_BINNING / 4).map(some).reduce_with(|mut a, b| {
+            a.merge(&b);
+            a
+        });
+        return merged?.cheapest(bounds, model);
     }
-    some(references)
+    BINS.with_borrow_mut(|bins| {
+        bins.reset(bounds, references.len());
+        bins.cheapest_for(references, bounds, model)
+    })
 }

@@ -2,6 +2,8 @@
 
 use super::clip::Reference;
 use super::tight::TightBox;
+use gz_core::SimdLevel;
+use gz_core::simd::{Simd, Task, dispatch};
 
 /// What the steps of a walk cost, in units of one group of eight triangles tested.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,29 +66,33 @@ impl Bin {
     }
 }
 
-/// Bins of all three axes over one box.
+/// Bins of all three axes over one box. Made once and used again and again.
 pub(crate) struct Bins {
-    origin: [f32; 3],
-    /// Bins a unit of length; 0 for an axis without extent.
-    scale: [f32; 3],
+    /// As a [`TightBox`] has its numbers: the box's lower corner, and the same negated.
+    origin: [f32; 8],
+    /// Bins a unit of length, and the same negated; 0 for an axis without extent.
+    scale: [f32; 8],
     width: [f32; 3],
     count: usize,
     bins: [[Bin; MOST_BINS]; 3],
 }
 
 impl Bins {
-    pub(crate) fn over(bounds: &TightBox, triangles: usize) -> Self {
-        let count = bins_for(triangles);
-        let width: [f32; 3] = std::array::from_fn(|axis| {
-            let width = (bounds.max(axis) - bounds.min(axis)) / count as f32;
-            if width > 0.0 && width.is_finite() && (1.0 / width).is_finite() { width } else { 0.0 }
-        });
-        Self {
-            origin: std::array::from_fn(|axis| bounds.min(axis)),
-            scale: width.map(|w| if w > 0.0 { 1.0 / w } else { 0.0 }),
-            width,
-            count,
-            bins: [[EMPTY_BIN; MOST_BINS]; 3],
+    pub(crate) fn new() -> Self {
+        Self { origin: [0.0; 8], scale: [0.0; 8], width: [0.0; 3], count: 0, bins: [[EMPTY_BIN; MOST_BINS]; 3] }
+    }
+
+    /// Empty bins over `bounds`, for so many triangles.
+    pub(crate) fn reset(&mut self, bounds: &TightBox, triangles: usize) {
+        self.count = bins_for(triangles);
+        for axis in 0..3 {
+            let width = (bounds.max(axis) - bounds.min(axis)) / self.count as f32;
+            let width = if width > 0.0 && width.is_finite() && (1.0 / width).is_finite() { width } else { 0.0 };
+            let scale = if width > 0.0 { 1.0 / width } else { 0.0 };
+            (self.origin[axis], self.origin[4 + axis]) = (bounds.min(axis), -bounds.min(axis));
+            (self.scale[axis], self.scale[4 + axis]) = (scale, -scale);
+            self.width[axis] = width;
+            self.bins[axis][..self.count].fill(EMPTY_BIN);
         }
     }
 
@@ -94,33 +100,64 @@ impl Bins {
         self.origin[axis] + bin as f32 * self.width[axis]
     }
 
-    /// The bin of a coordinate; rounding may give its neighbour, which only blurs an estimate.
-    fn bin(&self, axis: usize, x: f32) -> usize {
-        // The cast saturates, also from below.
-        (((x - self.origin[axis]) * self.scale[axis]) as usize).min(self.count - 1)
+    /// The bins of a box's ends, as the box has its numbers, and of its middle; rounding may give a neighbour, which only blurs an
+    /// estimate.
+    #[inline(always)]
+    fn ends(&self, bounds: &TightBox) -> ([u32; 8], [u32; 4]) {
+        // Number by number, so that it is done for all at once.
+        let last = WHOLE + (self.count - 1) as f32;
+        let (mut places, mut ends, mut middles) = ([0.0; 8], [0; 8], [0; 4]);
+        for k in 0..8 {
+            places[k] = (bounds.numbers()[k] - self.origin[k]) * self.scale[k] - 0.5;
+        }
+        for k in 0..8 {
+            ends[k] = whole(places[k], last);
+        }
+        for k in 0..4 {
+            middles[k] = whole((places[k] + places[4 + k]) * 0.5, last);
+        }
+        (ends, middles)
     }
 
-    pub(crate) fn add(&mut self, reference: &Reference) {
+    #[inline(always)]
+    fn add(&mut self, reference: &Reference) {
         let bounds = &reference.bounds;
+        let (ends, middles) = self.ends(bounds);
         for axis in 0..3 {
-            let (first, last) = (self.bin(axis, bounds.min(axis)), self.bin(axis, bounds.max(axis)));
-            self.bins[axis][first].begin += 1;
-            self.bins[axis][last].end += 1;
-            if first == last {
-                self.bins[axis][first].bounds.join(bounds);
+            let (first, last) = (ends[axis] as usize % MOST_BINS, ends[4 + axis] as usize % MOST_BINS);
+            if last <= first + 1 {
+                // Small as it is, it will most likely stand on one side alone.
+                let bin = &mut self.bins[axis][middles[axis] as usize % MOST_BINS];
+                bin.begin += 1;
+                bin.end += 1;
+                bin.bounds.join(bounds);
                 continue;
             }
+            self.bins[axis][first].begin += 1;
+            self.bins[axis][last].end += 1;
             let across = bounds.across(axis);
             let (mut low, last_high) = (bounds.min(axis), bounds.max(axis));
             for k in first..=last {
                 let end = self.plane(axis, k + 1);
                 let bin = &mut self.bins[axis][k];
                 bin.bounds.join(&across);
-                bin.low = bin.low.min(low);
-                bin.high = bin.high.max(if k == last { last_high } else { end });
+                bin.low = if low < bin.low { low } else { bin.low };
+                let high = if k == last { last_high } else { end };
+                bin.high = if high > bin.high { high } else { bin.high };
                 low = end;
             }
         }
+    }
+
+    /// Adds all `references`, with the instructions of this machine's best level.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn add_all(&mut self, references: &[Reference]) {
+        dispatch(SimdLevel::best(), AddAll { bins: self, references });
+    }
+
+    /// Adds all `references` to empty bins, and gives the cheapest plane, as [`Self::cheapest`] does.
+    pub(crate) fn cheapest_for(&mut self, references: &[Reference], bounds: &TightBox, model: &CostModel) -> Option<Cut> {
+        dispatch(SimdLevel::best(), Cheapest { bins: self, references, bounds, model })
     }
 
     /// Takes over what `other`, made for the same box, has seen. Counts and boxes do not depend on the order.
@@ -136,11 +173,12 @@ impl Bins {
     }
 
     /// The cheapest plane; `None` when no plane parts anything. Costs are areas times groups.
+    #[inline(always)]
     pub(crate) fn cheapest(&self, bounds: &TightBox, model: &CostModel) -> Option<Cut> {
         let mut best: Option<Cut> = None;
         let whole = bounds.area();
         for axis in 0..3 {
-            if self.scale[axis] == 0.0 {
+            if self.width[axis] == 0.0 {
                 continue;
             }
             let bins = &self.bins[axis][..self.count];
@@ -167,6 +205,53 @@ impl Bins {
             }
         }
         best
+    }
+}
+
+/// 2^23: beyond it a float's last bits are a whole number.
+const WHOLE: f32 = (1u32 << 23) as f32;
+
+/// The number of the bin at `place`, half a bin less than its distance from the first; `last` stands for the last bin.
+#[inline(always)]
+fn whole(place: f32, last: f32) -> u32 {
+    let place = (if place > 0.0 { place } else { 0.0 }) + WHOLE;
+    (if place < last { place } else { last }).to_bits() & 0xff
+}
+
+#[cfg(feature = "rayon")]
+struct AddAll<'a> {
+    bins: &'a mut Bins,
+    references: &'a [Reference],
+}
+
+#[cfg(feature = "rayon")]
+impl Task for AddAll<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        for reference in self.references {
+            self.bins.add(reference);
+        }
+    }
+}
+
+struct Cheapest<'a> {
+    bins: &'a mut Bins,
+    references: &'a [Reference],
+    bounds: &'a TightBox,
+    model: &'a CostModel,
+}
+
+impl Task for Cheapest<'_> {
+    type Output = Option<Cut>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> Option<Cut> {
+        for reference in self.references {
+            self.bins.add(reference);
+        }
+        self.bins.cheapest(self.bounds, self.model)
     }
 }
 

@@ -31,10 +31,18 @@ impl TightBox {
         Bounds { min: Vec3::new(lx, ly, lz), max: -Vec3::new(hx, hy, hz) }
     }
 
+    /// x, y, z of the lower corner and x, y, z of the upper one negated, each padded to four.
+    #[inline(always)]
+    pub(crate) fn numbers(&self) -> &[f32; 8] {
+        &self.0
+    }
+
+    #[inline(always)]
     pub(crate) fn min(&self, axis: usize) -> f32 {
         self.0[axis]
     }
 
+    #[inline(always)]
     pub(crate) fn max(&self, axis: usize) -> f32 {
         -self.0[4 + axis]
     }

@@ -3,7 +3,9 @@
 use super::build::{Cell, Content, build};
 use super::split::CostModel;
 use gz_core::kernel::{FilterSpace, TriGroup};
-use gz_core::{Bounds, SimdLevel, TriBuffer};
+use gz_core::{Bounds, SimdLevel, TriBuffer, TriId};
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
 
 /// Cells of a node.
 pub(crate) const WIDTH: usize = 8;
@@ -111,12 +113,16 @@ impl<'a> BspTree<'a> {
     /// The same by another cost model.
     pub fn with_cost(tris: &'a TriBuffer, model: CostModel) -> Self {
         let space = FilterSpace::new(tris.bounds().reaches());
-        let mut tree = Self { tris, level: SimdLevel::best(), nodes: Vec::new(), groups: Vec::new(), space };
         let root = build(tris, model);
-        tree.place(&root);
-        tree.nodes.shrink_to_fit();
-        tree.groups.shrink_to_fit();
-        tree
+        let mut plan = Plan { space, nodes: Vec::new(), groups: Vec::new() };
+        plan.place(&root);
+        plan.nodes.shrink_to_fit();
+        let group = |ids: &&[TriId]| TriGroup::new(ids, tris.positions(), &space);
+        #[cfg(feature = "rayon")]
+        let groups = plan.groups.par_iter().map(group).collect();
+        #[cfg(not(feature = "rayon"))]
+        let groups = plan.groups.iter().map(group).collect();
+        Self { tris, level: SimdLevel::best(), nodes: plan.nodes, groups, space }
     }
 
     /// The same tree walked with another set of vector instructions; where this machine lacks it, the best that it has.
@@ -134,9 +140,19 @@ impl<'a> BspTree<'a> {
     pub fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..]) + size_of_val(&self.groups[..])
     }
+}
 
+/// A tree on its way from cells to nodes.
+struct Plan<'c> {
+    space: FilterSpace,
+    nodes: Vec<WideNode>,
+    /// The triangles of each group, in the order of groups.
+    groups: Vec<&'c [TriId]>,
+}
+
+impl<'c> Plan<'c> {
     /// Appends the node of `cell` with its eight largest cells, and all below; returns its index.
-    fn place(&mut self, cell: &Cell) -> usize {
+    fn place(&mut self, cell: &'c Cell) -> usize {
         let index = self.nodes.len();
         self.nodes.push(WideNode::EMPTY);
         let mut cells = vec![cell];
@@ -157,7 +173,7 @@ impl<'a> BspTree<'a> {
                 Content::Leaf(ids) if ids.is_empty() => continue,
                 Content::Leaf(ids) => {
                     let first = self.groups.len();
-                    self.groups.extend(ids.chunks(8).map(|ids| TriGroup::new(ids, self.tris.positions(), &self.space)));
+                    self.groups.extend(ids.chunks(8));
                     Child::groups(first, self.groups.len() - first)
                 }
                 Content::Halves(_) => Child::node(self.place(cell)),
