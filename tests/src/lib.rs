@@ -9,3 +9,4 @@ pub mod needs_scenes;
 pub mod needs_time;
 pub mod rendered;
 pub mod scenes;
+pub mod truth;
