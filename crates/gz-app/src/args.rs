@@ -15,7 +15,16 @@ const CAMERAS: [(&str, CameraModel); 4] = [
     ("pinhole", CameraModel::Pinhole),
 ];
 const FRESNELS: [(&str, Fresnel); 2] = [("exact", Fresnel::Exact), ("schlick", Fresnel::Schlick)];
-const KERNELS: [(&str, Kernel); 2] = [("certified", Kernel::Certified), ("plane", Kernel::Plane)];
+const KERNELS: [(&str, Kernel); 8] = [
+    ("certified", Kernel::Certified),
+    ("plane", Kernel::Plane),
+    ("moeller-trumbore", Kernel::MoellerTrumbore),
+    ("moeller-trumbore-f64", Kernel::MoellerTrumboreF64),
+    ("woop", Kernel::Woop),
+    ("woop-fused", Kernel::WoopFused),
+    ("pluecker", Kernel::Pluecker),
+    ("baldwin-weber", Kernel::BaldwinWeber),
+];
 const VIEWS: [(&str, View); 3] = [("t", View::T), ("id", View::Id), ("normal", View::Normal)];
 const PROGRESS: [(&str, ProgressMode); 4] =
     [("auto", ProgressMode::Auto), ("plain", ProgressMode::Plain), ("json", ProgressMode::Json), ("none", ProgressMode::None)];
@@ -61,7 +70,7 @@ pub fn fresnel_name(fresnel: Fresnel) -> &'static str {
     name_of(fresnel, &FRESNELS)
 }
 
-/// `certified` or `plane`.
+/// A ray-triangle test by name.
 pub(crate) fn kernel(text: &str) -> Result<Kernel, String> {
     named(text, &KERNELS)
 }
@@ -168,6 +177,9 @@ mod tests {
     fn names_go_both_ways() {
         for (name, model) in CAMERAS {
             assert_eq!((camera(name), camera_name(model)), (Ok(model), name));
+        }
+        for kernel in Kernel::ALL {
+            assert_eq!(super::kernel(kernel_name(kernel)), Ok(kernel));
         }
         assert_eq!(camera("orthographic"), Err("it is one of homework, paper, screen, pinhole".to_owned()));
         assert_eq!((antialias("hw6"), antialias("16")), (Ok(Antialias::Hw6), Ok(Antialias::Samples(16))));

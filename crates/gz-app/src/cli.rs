@@ -68,7 +68,8 @@ pub struct SceneArgs {
 /// What answers rays.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct AccelArgs {
-    /// Ray-triangle test: certified (exact) or plane (the paper's, for comparison, by brute force)
+    /// Ray-triangle test: certified (exact); or for comparison, by brute force, plane (the paper's), moeller-trumbore,
+    /// moeller-trumbore-f64, woop, woop-fused, pluecker, baldwin-weber
     #[arg(long, value_name = "NAME", value_parser = args::kernel, default_value = "certified")]
     pub kernel: Kernel,
     /// What answers rays: bsp (the tree, the default) or brute (every triangle)

@@ -1,20 +1,25 @@
 //! Ray against triangle: a conservative filter, a certified f64 test, and an exact stage behind both.
 
+mod baldwin_weber;
 mod certify;
 mod dyadic;
 mod exact;
 mod filter;
 mod group;
+mod moeller_trumbore;
 mod order;
+mod plain;
 mod plane;
+mod pluecker;
 mod quotient;
+mod woop;
 
 pub use certify::hit_weights;
 pub(crate) use exact::side_sign;
 pub use filter::FilterRay;
 pub use group::TriGroup;
 pub use order::{Closest, is_hit};
-pub(crate) use plane::plane_then_inside;
+pub use plain::plain;
 
 /// Which ray-triangle test answers a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,6 +27,32 @@ pub enum Kernel {
     /// Exact: filter, certified f64 test, exact stage. The specification.
     #[default]
     Certified,
-    /// The paper's, in f32: plane first, then inside test. For lessons and comparison.
+    /// The paper's, in f32: plane first, then inside test. For lessons and comparison, as all that follow.
     Plane,
+    /// Möller and Trumbore's, in f32 and without a tolerance.
+    MoellerTrumbore,
+    /// The same in f64.
+    MoellerTrumboreF64,
+    /// Woop, Benthin and Wald's watertight one, in f32 with f64 where an edge function is 0.
+    Woop,
+    /// The same with fused multiply-adds, which cost it its property.
+    WoopFused,
+    /// By Plücker coordinates relative to the ray's origin, in f32.
+    Pluecker,
+    /// Baldwin and Weber's, one affine map a triangle, in f32.
+    BaldwinWeber,
+}
+
+impl Kernel {
+    /// All of them, the exact one first.
+    pub const ALL: [Self; 8] = [
+        Self::Certified,
+        Self::Plane,
+        Self::MoellerTrumbore,
+        Self::MoellerTrumboreF64,
+        Self::Woop,
+        Self::WoopFused,
+        Self::Pluecker,
+        Self::BaldwinWeber,
+    ];
 }
