@@ -7,7 +7,7 @@ use crate::progress::{ProgressMode, say};
 use crate::view::View;
 use crate::{compare, info, job, pixel_report, render};
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use gz_core::{CameraModel, Kernel, Tile};
+use gz_core::{CameraModel, Kernel, LeavePolicy, Tile};
 use gz_shade::{Antialias, Fresnel};
 use std::ffi::OsString;
 use std::io::Write;
@@ -54,6 +54,10 @@ pub struct SceneArgs {
     /// Reflected share at glass: exact or schlick (the paper's equations 2 and 3)
     #[arg(long, value_name = "HOW", value_parser = args::fresnel)]
     pub fresnel: Option<Fresnel>,
+    /// How shadow, mirror and glass rays leave a surface: exact; or for comparison bare, identity (the paper's), epsilon,
+    /// epsilon=T, waechter-binder, error-bound
+    #[arg(long, value_name = "POLICY", value_parser = args::leave)]
+    pub leave: Option<LeavePolicy>,
     /// Samples a pixel: none, hw6 (the course's six) or a number
     #[arg(long, value_name = "none|hw6|N", value_parser = args::antialias)]
     pub aa: Option<Antialias>,
@@ -217,13 +221,14 @@ mod tests {
 
     #[test]
     fn every_render_option_is_understood() {
-        let line = "gz render a.toml -o b.png --size 320x200 --camera paper --accel brute --depth 4 --fresnel schlick --kernel plane \
+        let line = "gz render a.toml -o b.png --size 320x200 --camera paper --accel brute --depth 4 --fresnel schlick --kernel plane --leave identity \
                     --aa 16 --threads 3 --tile 8 --crop 1,2,30,40 --progress json --stats-json s.json --explain --view id";
         let Some(Command::Render(args)) = Cli::try_parse_from(line.split_whitespace()).unwrap().command else {
             panic!("not a render");
         };
         assert_eq!((args.scene.size, args.scene.camera), (Some((320, 200)), Some(CameraModel::Paper)));
         assert_eq!((args.scene.depth, args.scene.fresnel), (Some(4), Some(Fresnel::Schlick)));
+        assert_eq!(args.scene.leave, Some(LeavePolicy::Identity));
         assert_eq!((args.scene.accel.kernel, args.scene.aa), (Kernel::Plane, Some(Antialias::Samples(16))));
         assert_eq!((args.crop, args.tile), (Some(Tile { x0: 1, y0: 2, x1: 30, y1: 40 }), 8));
         assert_eq!((args.progress, args.view, args.explain), (ProgressMode::Json, Some(View::Id), true));

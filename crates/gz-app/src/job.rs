@@ -126,7 +126,7 @@ impl RenderJob {
 
 /// The changes to the scene that these options ask for.
 pub fn overrides(args: &SceneArgs) -> Overrides {
-    Overrides { size: args.size, camera: args.camera, depth: args.depth, aa: args.aa, fresnel: args.fresnel }
+    Overrides { size: args.size, camera: args.camera, depth: args.depth, aa: args.aa, fresnel: args.fresnel, leave: args.leave }
 }
 
 /// The scene's name with `.png`, in the current folder.

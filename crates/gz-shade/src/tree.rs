@@ -3,9 +3,10 @@
 use crate::bounce::{Bouncer, Branch};
 use crate::crowd::Crowd;
 use crate::media::{Media, MediaStacks};
+use crate::source::skip_sources;
 use crate::{FrameStats, GlassBlend, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
-use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery};
+use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TriId};
 
 /// What kind of ray it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -159,10 +160,15 @@ impl Tree {
         if count == 0 {
             return 0;
         }
-        let rays = RayBatch::unbounded(count, PerRay::Each(&self.origins), PerRay::Each(&self.directions));
+        let (tmin, tmax) = (PerRay::One(scene.rules.leave.tmin()), PerRay::One(f32::INFINITY));
+        let rays = RayBatch::new(count, PerRay::Each(&self.origins), PerRay::Each(&self.directions), tmin, tmax);
         self.hits.clear();
         self.hits.resize(count, Hit::MISS);
         query.closest_hits(&rays, ClassMask::ALL, &mut self.hits);
+        if scene.rules.leave.skips_source() {
+            let leaves: Vec<TriId> = self.nodes[first..].iter().map(|node| self.nodes[node.parent as usize].hit.tri).collect();
+            skip_sources(query, &rays, ClassMask::ALL, &leaves, &mut self.hits);
+        }
 
         for (id, &hit) in (first..).zip(&self.hits) {
             self.nodes[id].hit = hit;
