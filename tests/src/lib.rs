@@ -3,7 +3,10 @@
 
 pub mod bench;
 pub mod counting;
+pub mod folder;
+pub mod hard;
 pub mod homework;
+pub mod judge;
 pub mod model;
 pub mod needs_scenes;
 pub mod needs_time;
