@@ -5,7 +5,7 @@ use crate::args;
 use crate::error::AppError;
 use crate::progress::{ProgressMode, say};
 use crate::view::View;
-use crate::{compare, info, job, pixel_report, render};
+use crate::{compare, info, job, pixel_report, query, render};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use gz_core::{CameraModel, Kernel, LeavePolicy, Tile};
 use gz_shade::{Antialias, Fresnel};
@@ -33,6 +33,8 @@ enum Command {
     Compare(CompareArgs),
     /// Print what a scene holds and needs
     Info(InfoArgs),
+    /// Cast a file of rays at a mesh and write their hits
+    Query(QueryArgs),
     /// Explain one pixel: its ray, what the ray meets, and its colour
     Pixel(PixelArgs),
 }
@@ -114,6 +116,10 @@ pub struct RenderArgs {
     /// Write the T-value of each pixel: 16 bytes each, f32 t, u32 triangle, f32 u, f32 v, row 0 on top
     #[arg(long, value_name = "FILE")]
     pub tbuffer: Option<PathBuf>,
+    /// Write the primary ray of each pixel, 32 bytes each as gz query reads them, row 0 on top; with the extension .rays64 as f64, which
+    /// keeps the origin's bits. They are in the space in which the camera model traces, under pinhole the world
+    #[arg(long, value_name = "FILE")]
+    pub rays_out: Option<PathBuf>,
     /// Show T-values (t), triangles (id) or face normals (normal) in place of colours
     #[arg(long, value_name = "WHAT", value_parser = args::view)]
     pub view: Option<View>,
@@ -163,6 +169,32 @@ pub struct PixelArgs {
     pub compare: Option<AccelKind>,
 }
 
+/// `gz query`.
+#[derive(Args, Clone, Debug)]
+pub struct QueryArgs {
+    /// Mesh (.obj, .asc) or scene (.toml, in world space)
+    #[arg(long, value_name = "FILE")]
+    pub mesh: PathBuf,
+    /// Rays: 32 bytes each, f32 ox oy oz tmin dx dy dz tmax, little-endian, no header
+    #[arg(long, value_name = "FILE", required_unless_present = "rays64", conflicts_with = "rays64")]
+    pub rays: Option<PathBuf>,
+    /// Rays as f64, 64 bytes each; all but the origin is rounded to f32
+    #[arg(long, value_name = "FILE")]
+    pub rays64: Option<PathBuf>,
+    /// Hits: 16 bytes each, f32 t (infinity for a miss), u32 triangle (0xffffffff for a miss), f32 u, f32 v
+    #[arg(long, value_name = "FILE")]
+    pub hits: PathBuf,
+    /// Only ask whether a ray meets anything: 16 zero bytes if it does, a miss if not
+    #[arg(long)]
+    pub any: bool,
+    /// What answers rays.
+    #[command(flatten)]
+    pub accel: AccelArgs,
+    /// Threads, 0 for all cores
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+}
+
 /// Runs `gz` with these arguments, the program's name first. Returns the exit code, having said on standard error why it is not 0.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let done = match Cli::try_parse_from(arguments) {
@@ -194,6 +226,7 @@ fn execute(command: &Command) -> Result<(), AppError> {
             comparison.verdict
         }
         Command::Info(args) => print(&info::report(&args.scene)?),
+        Command::Query(args) => print(&query::query(args)?),
         Command::Pixel(args) => {
             let explained = pixel_report::explain(args)?;
             print(&explained.report)?;

@@ -20,6 +20,8 @@ pub mod pfm;
 pub mod picture;
 pub mod pixel_report;
 pub mod progress;
+pub mod query;
+pub mod rays_file;
 pub mod render;
 pub mod sheet;
 pub mod stats;
