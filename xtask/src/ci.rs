@@ -8,6 +8,11 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
         return Err(Failure { message: format!("ci takes no arguments, not {}", arguments.join(" ")), code: 2 });
     }
     finish(cargo().args(["fmt", "--all", "--check"]), "the format check (cargo fmt mends it)")?;
+    // Outside of the workspace, and so of the line above and the next; built for the peers bench alone.
+    let plugin = "tests/peers/plugin/Cargo.toml";
+    finish(cargo().args(["fmt", "--check", "--manifest-path", plugin]), "the format check of tests/peers/plugin")?;
+    let lint = ["clippy", "--locked", "--manifest-path", plugin, "--target-dir", "target/peers/clippy", "--", "-D", "warnings"];
+    finish(cargo().args(lint), "clippy of tests/peers/plugin")?;
     finish(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]), "clippy")?;
     // The libraries as others may depend on them: on one thread, without rayon.
     let alone = ["clippy", "-p", "gz-core", "-p", "gz-bsp", "--no-default-features", "--", "-D", "warnings"];

@@ -54,8 +54,8 @@ const TASKS: [Task; 6] = [
     },
     Task {
         name: "bench",
-        takes: "paper|grid|brute|scale|agree",
-        does: "measure: the paper's tables, the best of its trees, plain C, growth (see docs/BENCH.md)",
+        takes: "paper|grid|brute|scale|front|memory|agree|peers",
+        does: "measure: the paper's tables, the best of its trees, plain C, growth, others (see docs/BENCH.md)",
         run: bench::run,
     },
     Task { name: "ci", takes: "", does: "format, clippy, docs and tests: what has to pass before a push", run: ci::run },
@@ -81,7 +81,7 @@ fn main() -> ExitCode {
 }
 
 fn list() -> String {
-    let rows = TASKS.iter().map(|task| format!("  {:<8}{:<30}{}\n", task.name, task.takes, task.does));
+    let rows = TASKS.iter().map(|task| format!("  {:<8}{:<50}{}\n", task.name, task.takes, task.does));
     format!("cargo xtask TASK\n\n{}", rows.collect::<String>())
 }
 

@@ -158,7 +158,7 @@ impl Built<'_> {
                 )
             }
             Self::Midpoint(tree) => {
-                let TreeStats { nodes, leaves, empty_leaves, references, largest_leaf, depth, bytes } = TreeStats::of(tree);
+                let TreeStats { nodes, leaves, empty_leaves, references, largest_leaf, depth, bytes, .. } = TreeStats::of(tree);
                 let Midpoint { max_depth, min_size, .. } = tree.params();
                 format!(
                     "bsp by midpoint ({max_depth}, {min_size}): {nodes} nodes, {leaves} leaves ({empty_leaves} empty), \

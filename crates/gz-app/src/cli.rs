@@ -152,6 +152,9 @@ pub struct InfoArgs {
     /// The scene and what changes it.
     #[command(flatten)]
     pub scene: SceneArgs,
+    /// Print what the tree looks like, and what random lines visit in it beside what its builder expects
+    #[arg(long)]
+    pub tree: bool,
 }
 
 /// `gz pixel`.
@@ -225,7 +228,7 @@ fn execute(command: &Command) -> Result<(), AppError> {
             print(&comparison.report)?;
             comparison.verdict
         }
-        Command::Info(args) => print(&info::report(&args.scene)?),
+        Command::Info(args) => print(&info::report(args)?),
         Command::Query(args) => print(&query::query(args)?),
         Command::Pixel(args) => {
             let explained = pixel_report::explain(args)?;

@@ -2,21 +2,25 @@
 
 use crate::accel::Accel;
 use crate::args;
-use crate::cli::SceneArgs;
+use crate::cli::InfoArgs;
 use crate::error::AppError;
 use crate::progress::say;
-use crate::{explain, job, load, threads};
+use crate::{explain, job, load, threads, tree_report};
 use gz_core::{GzColor, GzCoord};
 use gz_shade::{MaterialKind, Scene, SceneNeeds, Texture};
 use std::fmt::Write;
 
-/// Counts, bounds, needs and memory of a scene, as lines of text.
+/// Counts, bounds, needs and memory of a scene, as lines of text; with `--tree` also what the tree looks like.
 ///
 /// # Errors
 ///
-/// If the scene cannot be used.
-pub fn report(args: &SceneArgs) -> Result<String, AppError> {
+/// If the scene cannot be used, or there is no tree to be looked at.
+pub fn report(info: &InfoArgs) -> Result<String, AppError> {
+    let args = &info.scene;
     let accel = Accel::of(&args.accel)?;
+    if info.tree && matches!(accel, Accel::Brute(_)) {
+        return Err(AppError::Usage("--tree: brute force has no tree".to_owned()));
+    }
     threads::with(args.threads, || {
         let draft = load::scene(&args.scene, &job::overrides(args))?;
         draft.warnings.iter().for_each(|warning| say(&format!("gz: warning: {warning}")));
@@ -26,6 +30,9 @@ pub fn report(args: &SceneArgs) -> Result<String, AppError> {
         let mut text = describe(&args.scene.display().to_string(), &scene, dropped);
         let per_triangle = built.bytes() as f64 / scene.tris.len().max(1) as f64;
         let _ = writeln!(text, "tree       {}, {per_triangle:.1} a triangle", built.describe());
+        if info.tree {
+            text += &tree_report::report(&built).unwrap_or_default();
+        }
         Ok(text)
     })
 }

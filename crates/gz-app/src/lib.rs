@@ -21,12 +21,14 @@ pub mod picture;
 pub mod pixel_report;
 pub mod progress;
 pub mod query;
+pub mod random_lines;
 pub mod rays_file;
 pub mod render;
 pub mod sheet;
 pub mod stats;
 pub mod teapot;
 pub mod threads;
+pub mod tree_report;
 pub mod view;
 
 /// The README's Rust code, run with the documentation's tests.

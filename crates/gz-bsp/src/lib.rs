@@ -17,6 +17,7 @@
 
 mod check;
 mod cost;
+mod expect;
 mod midpoint;
 mod params;
 mod slab;
@@ -25,6 +26,7 @@ mod visit;
 mod walk;
 
 pub use cost::{BspTree, CostModel, CostStats};
+pub use expect::Expected;
 pub use midpoint::{MidpointTree, Node};
 pub use params::{BuildError, Midpoint};
 pub use stats::TreeStats;

@@ -15,6 +15,10 @@ pub struct TreeStats {
     pub references: usize,
     /// Entries of the longest list.
     pub largest_leaf: usize,
+    /// Entries of the shortest list that has any.
+    pub smallest_leaf: usize,
+    /// The lower median of the lists that have any.
+    pub median_leaf: usize,
     /// The deepest level; the root's is 1.
     pub depth: u32,
     /// Bytes beyond the triangle buffer.
@@ -30,14 +34,35 @@ impl TreeStats {
             bytes: size_of_val(tree.nodes()) + size_of_val(tree.references()),
             ..Self::default()
         };
+        let mut sizes = Vec::new();
         for node in &tree.nodes {
             if let Node::Leaf { level, count, .. } = *node {
                 stats.leaves += 1;
                 stats.empty_leaves += usize::from(count == 0);
-                stats.largest_leaf = stats.largest_leaf.max(count as usize);
                 stats.depth = stats.depth.max(level);
+                sizes.extend((count > 0).then_some(count as usize));
             }
         }
+        [stats.smallest_leaf, stats.median_leaf, stats.largest_leaf] = least_median_most(sizes);
         stats
+    }
+}
+
+/// The least, the lower median and the greatest of `sizes`; zeros when there are none.
+pub(crate) fn least_median_most(mut sizes: Vec<usize>) -> [usize; 3] {
+    sizes.sort_unstable();
+    let (Some(&least), Some(&most)) = (sizes.first(), sizes.last()) else { return [0; 3] };
+    [least, sizes[(sizes.len() - 1) / 2], most]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::least_median_most;
+
+    #[test]
+    fn the_median_is_one_of_the_sizes() {
+        assert_eq!(least_median_most(vec![7, 1, 3, 2]), [1, 2, 7]);
+        assert_eq!(least_median_most(vec![4]), [4; 3]);
+        assert_eq!(least_median_most(Vec::new()), [0; 3]);
     }
 }

@@ -1,13 +1,13 @@
 //! Every ray against every triangle: the specification of [`RayQuery`].
 
-use crate::kernel::{Closest, FilterRay, TriGroup, is_hit, plain};
-use crate::simd::{Lanes, Task, dispatch, with_default_float_control};
-use crate::{ClassMask, GzCoord, GzRay, Hit, Kernel, NO_TRI, RayBatch, RayQuery, SimdLevel, TriBuffer, TriId};
+use crate::kernel::{Closest, FilterRay, FilterSpace, TriGroup, is_hit, plain};
+use crate::simd::{Simd, Task, dispatch, with_default_float_control};
+use crate::{ClassMask, GzRay, Hit, Kernel, NO_TRI, RayBatch, RayQuery, SimdLevel, TriBuffer, TriId};
 
 /// Every ray against every triangle.
 ///
 /// With the default kernel a conservative filter looks at eight triangles at a time and an exact test at what it lets through, so
-/// the answer is the exact one. Building copies the corners once, 40 bytes a triangle.
+/// the answer is the exact one. Building copies the corners once, 44 bytes a triangle.
 #[derive(Debug)]
 pub struct BruteForce<'a> {
     tris: &'a TriBuffer,
@@ -15,10 +15,10 @@ pub struct BruteForce<'a> {
     level: SimdLevel,
     /// All triangles in order; none for a kernel that is not filtered.
     groups: Vec<TriGroup>,
-    reach: GzCoord,
+    space: FilterSpace,
 }
 
-/// Groups worked on at a time, for all rays of a batch: 256 triangles, 10 KiB, stay in the first-level cache.
+/// Groups worked on at a time, for all rays of a batch: 256 triangles, 11 KiB, stay in the first-level cache.
 const AT_A_TIME: usize = 32;
 
 impl<'a> BruteForce<'a> {
@@ -30,8 +30,9 @@ impl<'a> BruteForce<'a> {
     /// Over `tris`, with a kernel of choice.
     pub fn with_kernel(tris: &'a TriBuffer, kernel: Kernel) -> Self {
         let ids: Vec<TriId> = if kernel == Kernel::Certified { (0..tris.len() as TriId).collect() } else { Vec::new() };
-        let groups = ids.chunks(8).map(|ids| TriGroup::new(ids, tris.positions())).collect();
-        Self { tris, kernel, level: SimdLevel::best(), groups, reach: tris.bounds().reaches() }
+        let space = FilterSpace::new(tris.bounds().reaches());
+        let groups = ids.chunks(8).map(|ids| TriGroup::new(ids, tris.positions(), &space)).collect();
+        Self { tris, kernel, level: SimdLevel::best(), groups, space }
     }
 
     /// The same with another set of vector instructions; where this machine lacks it, the best that it has. Answers stay equal.
@@ -56,7 +57,7 @@ impl<'a> BruteForce<'a> {
         let mut open: Vec<(usize, GzRay, Option<FilterRay>)> = (0..rays.len())
             .map(|i| (i, rays.ray(i)))
             .filter(|(_, ray)| ray.is_valid())
-            .map(|(i, ray)| (i, ray, FilterRay::new(&ray, self.reach)))
+            .map(|(i, ray)| (i, ray, FilterRay::new(&ray, &self.space)))
             .collect();
         let everything = classes == ClassMask::ALL;
         let mut survivors = Vec::new();
@@ -98,9 +99,9 @@ impl Task for Filter<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(self) {
+    fn run<S: Simd>(self) {
         for group in self.groups {
-            let mut lanes = group.survivors::<L>(self.ray);
+            let mut lanes = group.survivors::<S>(self.ray);
             while lanes != 0 {
                 let tri = group.id(lanes.trailing_zeros() as usize);
                 lanes &= lanes - 1;

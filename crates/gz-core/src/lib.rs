@@ -48,7 +48,7 @@ pub use leave::{leave_surface, side_of};
 pub use leave_policy::LeavePolicy;
 pub use matrix::GzMatrix;
 pub use pixel::{GzPixel, TBuffer, TileScratch, trace_tile};
-pub use query::{ClassMask, PerRay, RayBatch, RayQuery};
+pub use query::{ClassMask, PerRay, RayBatch, RayQuery, Targets};
 pub use ray::GzRay;
 pub use simd::{SimdLevel, with_default_float_control};
 pub use stack::{MatrixStack, StackError};

@@ -1,6 +1,6 @@
 //! The one question that everything above asks, in batches.
 
-use crate::{GzCoord, GzRay, Hit, TriBuffer, TriClass};
+use crate::{GzCoord, GzRay, Hit, NO_TRI, TriBuffer, TriClass, TriId};
 use glam::DVec3;
 
 /// A property of the rays of a batch: the same for all, or one each.
@@ -44,6 +44,9 @@ pub struct RayBatch<'a> {
     pub tmin: PerRay<'a, f32>,
     /// Upper ends of t, strict.
     pub tmax: PerRay<'a, f32>,
+    /// For each ray a triangle that it is known not to hit, such as the one that it leaves by [`crate::leave_surface`], or
+    /// [`crate::NO_TRI`]: testing it is then saved. It does not change any answer; see [`Self::leaving`].
+    pub leaves: Option<&'a [TriId]>,
 }
 
 impl<'a> RayBatch<'a> {
@@ -62,12 +65,28 @@ impl<'a> RayBatch<'a> {
         for forced in [origin.forced_len(), direction.forced_len(), tmin.forced_len(), tmax.forced_len()] {
             assert!(forced.is_none_or(|n| n == len), "every property of a batch of {len} rays is one or {len} values");
         }
-        Self { len, origin, direction, tmin, tmax }
+        Self { len, origin, direction, tmin, tmax, leaves: None }
     }
 
     /// Rays with t in (0, infinity).
     pub fn unbounded(len: usize, origin: PerRay<'a, DVec3>, direction: PerRay<'a, GzCoord>) -> Self {
         Self::new(len, origin, direction, PerRay::One(0.0), PerRay::One(f32::INFINITY))
+    }
+
+    /// The same rays, each known not to hit the triangle `leaves[i]`. A wrong promise may show in the answer, or not.
+    ///
+    /// # Panics
+    ///
+    /// If `leaves` is not as long as the batch.
+    #[must_use]
+    pub fn leaving(self, leaves: &'a [TriId]) -> Self {
+        assert!(leaves.len() == self.len, "one triangle a ray");
+        Self { leaves: Some(leaves), ..self }
+    }
+
+    /// The triangle that ray `i` is known not to hit, or [`crate::NO_TRI`].
+    pub fn left_by(&self, i: usize) -> TriId {
+        self.leaves.map_or(NO_TRI, |leaves| leaves[i])
     }
 
     /// The number of rays.
@@ -110,6 +129,39 @@ impl ClassMask {
     /// Whether `class` is in the set.
     pub const fn has(self, class: TriClass) -> bool {
         self.0 & (1 << class as u8) != 0
+    }
+}
+
+/// The triangles that a query sees.
+#[derive(Clone, Copy, Debug)]
+pub struct Targets<'t> {
+    tris: &'t TriBuffer,
+    classes: ClassMask,
+    all: bool,
+}
+
+impl<'t> Targets<'t> {
+    /// Those of `tris` whose class is in `classes`.
+    pub fn new(tris: &'t TriBuffer, classes: ClassMask) -> Self {
+        Self { tris, classes, all: classes == ClassMask::ALL }
+    }
+
+    /// Whether the query sees a triangle.
+    #[inline(always)]
+    pub fn sees(&self, tri: TriId) -> bool {
+        self.all || self.classes.has(self.tris.class(tri))
+    }
+
+    /// Corners of all triangles, seen or not.
+    #[inline(always)]
+    pub fn positions(&self) -> &'t [[GzCoord; 3]] {
+        self.tris.positions()
+    }
+
+    /// Corners of one triangle.
+    #[inline(always)]
+    pub fn position(&self, tri: TriId) -> &'t [GzCoord; 3] {
+        self.tris.position(tri)
     }
 }
 

@@ -40,9 +40,11 @@ impl Tile {
         (tile.y0..tile.y1).flat_map(move |j| (tile.x0..tile.x1).map(move |i| (i, j)))
     }
 
-    /// (column, row) of each pixel, square by square of four by four: the order in which rays are traced, as neighbours go the same way.
+    /// (column, row) of each pixel, square by square of eight by eight and in these of four by four: the order in which rays are traced, as
+    /// neighbours go the same way.
     pub fn in_squares(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
-        TileGrid::of(*self, 4).into_tiles().flat_map(|square| square.pixels())
+        let squares = TileGrid::of(*self, 8).into_tiles().flat_map(|square| TileGrid::of(square, 4).into_tiles());
+        squares.flat_map(|square| square.pixels())
     }
 }
 

@@ -4,10 +4,10 @@
 //! ambient light stays. We differ from the paper in that glass may tint instead of block, rays to a point light end before it, and P
 //! lies provably on the side that L points to instead of the triangle being skipped by its number.
 
-use crate::source::skip_sources;
+use crate::source::{leaving, skip_sources};
 use crate::{Scene, ShadowRule};
 use glam::DVec3;
-use gz_core::{ClassMask, GzColor, GzCoord, Hit, PerRay, RayBatch, RayQuery, TriClass, TriId};
+use gz_core::{ClassMask, GzColor, GzCoord, Hit, LeavePolicy, PerRay, RayBatch, RayQuery, TriClass, TriId};
 
 /// A ray from a surface to a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +28,7 @@ pub(crate) struct ShadowRays {
     pub(crate) origins: Vec<DVec3>,
     pub(crate) directions: Vec<GzCoord>,
     pub(crate) tmax: Vec<f32>,
+    /// The triangles that they leave.
     leaves: Vec<TriId>,
 }
 
@@ -54,14 +55,15 @@ impl ShadowRays {
     }
 
     /// The rays as a batch. `common_direction`: all directions are equal, and without end.
-    fn batch(&self, common_direction: bool, tmin: f32) -> RayBatch<'_> {
-        let (len, origins, tmin) = (self.origins.len(), PerRay::Each(&self.origins[..]), PerRay::One(tmin));
-        match self.directions.first() {
+    fn batch(&self, common_direction: bool, policy: LeavePolicy) -> RayBatch<'_> {
+        let (len, origins, tmin) = (self.origins.len(), PerRay::Each(&self.origins[..]), PerRay::One(policy.tmin()));
+        let batch = match self.directions.first() {
             Some(&direction) if common_direction => {
                 RayBatch::new(len, origins, PerRay::One(direction), tmin, PerRay::One(f32::INFINITY))
             }
             _ => RayBatch::new(len, origins, PerRay::Each(&self.directions), tmin, PerRay::Each(&self.tmax)),
-        }
+        };
+        leaving(batch, policy, &self.leaves)
     }
 
     /// The front-most hits of the rays among `classes`, their own triangles left out where the rules say so.
@@ -90,7 +92,7 @@ pub(crate) fn look(scene: &Scene, query: &dyn RayQuery, ray: &ShadowRay) -> (GzC
     let mut shadows = Shadows::default();
     shadows.trace(scene, query, &rays, false);
     let mut blocker = Vec::new();
-    rays.closest(scene, query, &rays.batch(false, scene.rules.leave.tmin()), blockers(scene), &mut blocker);
+    rays.closest(scene, query, &rays.batch(false, scene.rules.leave), blockers(scene), &mut blocker);
     (shadows.shares[0], blocker[0])
 }
 
@@ -112,7 +114,7 @@ impl Shadows {
     pub(crate) fn trace(&mut self, scene: &Scene, query: &dyn RayQuery, rays: &ShadowRays, common_direction: bool) -> u64 {
         let tinted = scene.rules.shadow == ShadowRule::Tinted;
         let blockers = blockers(scene);
-        let batch = rays.batch(common_direction, scene.rules.leave.tmin());
+        let batch = rays.batch(common_direction, scene.rules.leave);
         self.blocked.clear();
         if scene.rules.leave.skips_source() {
             // *That* something is hit is not enough: it may be the triangle left.
@@ -147,6 +149,7 @@ impl Shadows {
                 PerRay::Each(&self.tmin),
                 PerRay::Each(&self.rest.tmax),
             );
+            let batch = leaving(batch, scene.rules.leave, &self.rest.leaves);
             self.rest.closest(scene, query, &batch, ClassMask::only(TriClass::Glass), &mut self.hits);
             questions += self.on_way.len() as u64;
             // Keep the rays that met glass, to ask again behind it.

@@ -1,6 +1,12 @@
-//! Rays that do not see the triangle they leave: the paper's rule, kept for comparison.
+//! The triangle that a ray leaves: by proof it is not met again, by the paper's rule it is not looked at.
 
-use gz_core::{ClassMask, Hit, PerRay, RayBatch, RayQuery, TriId};
+use gz_core::{ClassMask, Hit, LeavePolicy, PerRay, RayBatch, RayQuery, TriId};
+
+/// `rays` with the promise that none meets the triangle that it leaves, `leaves[i]` for ray `i`, where they leave in the way that makes it
+/// true. Other ways promise nothing, and their rays may meet it.
+pub(crate) fn leaving<'a>(rays: RayBatch<'a>, policy: LeavePolicy, leaves: &'a [TriId]) -> RayBatch<'a> {
+    if policy == LeavePolicy::Exact { rays.leaving(leaves) } else { rays }
+}
 
 /// Takes hits of `rays` on the triangles that they leave, `leaves[i]` for ray `i`, for misses of those: `hits`, the front-most ones among
 /// `classes`, become the next ones.

@@ -3,7 +3,7 @@
 use crate::bounce::{Bouncer, Branch};
 use crate::crowd::Crowd;
 use crate::media::{Media, MediaStacks};
-use crate::source::skip_sources;
+use crate::source::{leaving, skip_sources};
 use crate::{FrameStats, GlassBlend, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
 use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TriId};
@@ -83,6 +83,7 @@ pub(crate) struct Tree {
     crowd: Crowd,
     origins: Vec<DVec3>,
     directions: Vec<GzCoord>,
+    leaves: Vec<TriId>,
     hits: Vec<Hit>,
 }
 
@@ -142,10 +143,12 @@ impl Tree {
         let first = self.nodes.len();
         self.origins.clear();
         self.directions.clear();
+        self.leaves.clear();
         for branch in self.branches.iter().filter(|branch| branch.kind == kind) {
             let parent = &self.nodes[branch.parent as usize];
             self.origins.push(branch.ray.origin);
             self.directions.push(branch.ray.direction);
+            self.leaves.push(parent.hit.tri);
             self.nodes.push(Node {
                 parent: branch.parent,
                 kind,
@@ -162,12 +165,12 @@ impl Tree {
         }
         let (tmin, tmax) = (PerRay::One(scene.rules.leave.tmin()), PerRay::One(f32::INFINITY));
         let rays = RayBatch::new(count, PerRay::Each(&self.origins), PerRay::Each(&self.directions), tmin, tmax);
+        let rays = leaving(rays, scene.rules.leave, &self.leaves);
         self.hits.clear();
         self.hits.resize(count, Hit::MISS);
         query.closest_hits(&rays, ClassMask::ALL, &mut self.hits);
         if scene.rules.leave.skips_source() {
-            let leaves: Vec<TriId> = self.nodes[first..].iter().map(|node| self.nodes[node.parent as usize].hit.tri).collect();
-            skip_sources(query, &rays, ClassMask::ALL, &leaves, &mut self.hits);
+            skip_sources(query, &rays, ClassMask::ALL, &self.leaves, &mut self.hits);
         }
 
         for (id, &hit) in (first..).zip(&self.hits) {

@@ -57,13 +57,13 @@ pub fn run(options: &Options) -> Result<(), AppError> {
 }
 
 /// A setting that came through all heats.
-struct Finalist<'a> {
-    setting: Midpoint,
-    tree: MidpointTree<'a>,
+pub(super) struct Finalist<'a> {
+    pub(super) setting: Midpoint,
+    pub(super) tree: MidpointTree<'a>,
     /// Its time in the last heat, in times of the self-tuned tree.
     time: f64,
     /// Seconds a ray in the last heat.
-    per_ray: f64,
+    pub(super) per_ray: f64,
 }
 
 /// Holds the contest on one scene and prints it; returns how many answers differ.
@@ -151,7 +151,7 @@ fn contest(scene: &BenchScene, rounds: usize) -> u64 {
 }
 
 /// Compares the tree that tunes itself with brute force on as many of the rays as that has time for.
-fn check(tris: &TriBuffer, rays: &RaySet, tuned: &BspTree<'_>) -> u64 {
+pub(super) fn check(tris: &TriBuffer, rays: &RaySet, tuned: &BspTree<'_>) -> u64 {
     let few = rays.sample((CHECKED_TESTS / tris.len().max(1) as f64) as usize);
     let wrong = differing(&answers(&BruteForce::new(tris), &few), &answers(tuned, &few));
     println!("checked by brute force: {} rays, {wrong} differ", few.len());
@@ -159,17 +159,18 @@ fn check(tris: &TriBuffer, rays: &RaySet, tuned: &BspTree<'_>) -> u64 {
 }
 
 /// What came of the heats.
-struct Heats<'a> {
-    finalists: Vec<Finalist<'a>>,
+pub(super) struct Heats<'a> {
+    /// The fastest first.
+    pub(super) finalists: Vec<Finalist<'a>>,
     tried: usize,
     refused: usize,
     stopped: usize,
-    differing: u64,
+    pub(super) differing: u64,
 }
 
 /// Lets every setting of the grid trace ever more of the rays, until it is clearly slower than the best so far; the fastest go to the
 /// final. Whatever is traced is compared with the answers of `tuned`.
-fn heats<'a>(tris: &'a TriBuffer, rays: &RaySet, tuned: &BspTree<'_>) -> Heats<'a> {
+pub(super) fn heats<'a>(tris: &'a TriBuffer, rays: &RaySet, tuned: &BspTree<'_>) -> Heats<'a> {
     let parts = HEATS.map(|(most, _)| rays.sample(most));
     let truths = parts.each_ref().map(|part| answers(tuned, part));
     let mut best = [f64::INFINITY; HEATS.len()];

@@ -6,9 +6,12 @@
 pub mod agree;
 pub mod brute;
 pub mod counted;
+pub mod front;
 pub mod grid;
+pub mod memory;
 pub mod options;
 pub mod paper;
+pub mod peers;
 pub mod plain_c;
 pub mod rays;
 pub mod recorder;
@@ -26,6 +29,12 @@ use options::{Bench, Options};
 ///
 /// Usage errors, scenes that cannot be loaded, and answers that differ.
 pub fn run(words: &[String]) -> Result<(), AppError> {
+    // It has other options, and programs of its own to time.
+    if let Some((first, words)) = words.split_first()
+        && first == "peers"
+    {
+        return peers::run(words);
+    }
     let options = Options::parse(words)?;
     println!("{}", timing::machine(options.threads));
     // One pool for all of a bench: what it times never includes making threads.
@@ -34,6 +43,8 @@ pub fn run(words: &[String]) -> Result<(), AppError> {
         Bench::Grid => grid::run(&options),
         Bench::Brute => brute::run(&options),
         Bench::Scale => scale::run(&options),
+        Bench::Front => front::run(&options),
+        Bench::Memory => memory::run(&options),
         Bench::Agree => agree::run(&options),
     })
 }

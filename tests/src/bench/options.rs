@@ -13,6 +13,10 @@ pub enum Bench {
     Brute,
     /// Time and memory against the number of triangles.
     Scale,
+    /// Bytes, build time and speed for several settings of the builder.
+    Front,
+    /// The most memory that a render of many triangles takes.
+    Memory,
     /// Equal answers over every scene of assets.
     Agree,
 }
@@ -34,7 +38,7 @@ pub struct Options {
     pub limit: Option<usize>,
 }
 
-const USAGE: &str = "bench paper|grid|brute|scale|agree [--scene NAME|FILE|teapot:SEGMENTS|uneven] [--threads N] [--rounds N] [--rays N] [--limit TRIANGLES]";
+const USAGE: &str = "bench paper|grid|brute|scale|front|memory|agree [--scene NAME|FILE|teapot:SEGMENTS|uneven] [--threads N] [--rounds N] [--rays N] [--limit TRIANGLES], or bench peers";
 
 impl Options {
     /// Reads the words.
@@ -50,6 +54,8 @@ impl Options {
             Some("grid") => Bench::Grid,
             Some("brute") => Bench::Brute,
             Some("scale") => Bench::Scale,
+            Some("front") => Bench::Front,
+            Some("memory") => Bench::Memory,
             Some("agree") => Bench::Agree,
             Some(other) => return Err(usage(format!("there is no bench {other}"))),
             None => return Err(usage("no bench is named".to_owned())),

@@ -3,7 +3,8 @@
 use super::recorder::Recorder;
 use glam::{DVec2, DVec3};
 use gz_app::error::AppError;
-use gz_core::{ClassMask, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TileGrid, TriId, leave_surface};
+use gz_app::random_lines::RandomLines;
+use gz_core::{Bounds, ClassMask, GzCoord, GzRay, Hit, NO_TRI, PerRay, RayBatch, RayQuery, TileGrid, TriId, leave_surface};
 use gz_shade::reflection::reflect;
 use gz_shade::{MaterialKind, Scene, SceneNeeds, shade_frame};
 use rayon::prelude::*;
@@ -51,27 +52,31 @@ pub struct Asked {
     pub classes: ClassMask,
     /// Whether only *that* something is hit was asked, and not what.
     pub any: bool,
-    /// The triangle that each ray leaves; empty where that is not known.
-    pub(super) leaves: Vec<Option<TriId>>,
+    /// The triangle that each ray leaves, [`NO_TRI`] for none; empty where that is not known.
+    pub(super) leaves: Vec<TriId>,
 }
 
 impl Asked {
     /// The batch to ask.
     pub fn batch(&self) -> RayBatch<'_> {
-        RayBatch::new(self.len, self.origin.view(), self.direction.view(), self.tmin.view(), self.tmax.view())
+        let batch = RayBatch::new(self.len, self.origin.view(), self.direction.view(), self.tmin.view(), self.tmax.view());
+        if self.leaves.is_empty() { batch } else { batch.leaving(&self.leaves) }
     }
 
     /// The triangle that ray `i` leaves, where it is known.
     pub fn leaves(&self, i: usize) -> Option<TriId> {
-        self.leaves.get(i).copied().flatten()
+        self.leaves.get(i).copied().filter(|&tri| tri != NO_TRI)
     }
 
     /// Rays without end, each with the triangle that it leaves.
-    fn unbounded(origin: Values<DVec3>, direction: Values<GzCoord>, leaves: Vec<Option<TriId>>) -> Self {
+    fn unbounded(origin: Values<DVec3>, direction: Values<GzCoord>, leaves: Vec<TriId>) -> Self {
         let (tmin, tmax) = (Values::One(0.0), Values::One(f32::INFINITY));
         Self { len: leaves.len(), origin, direction, tmin, tmax, classes: ClassMask::ALL, any: false, leaves }
     }
 }
+
+/// Lines in a batch of random ones.
+const RANDOM_BATCH: usize = 1024;
 
 /// Rays in the order in which they are asked, batch by batch.
 #[derive(Clone, Debug, Default)]
@@ -130,8 +135,38 @@ impl RaySet {
     /// The rays of the camera alone: those that start at one point and ask what they hit.
     #[must_use]
     pub fn primary(&self) -> Self {
-        let primary = |asked: &&Asked| !asked.any && matches!(asked.origin, Values::One(_));
-        Self { batches: self.batches.iter().filter(primary).cloned().collect() }
+        self.only(|asked| !asked.any && matches!(asked.origin, Values::One(_)))
+    }
+
+    /// Those that ask only whether something is in the way.
+    #[must_use]
+    pub fn shadow(&self) -> Self {
+        self.only(|asked| asked.any)
+    }
+
+    /// Those that leave a surface and ask what they hit: of mirrors and glass.
+    #[must_use]
+    pub fn bounced(&self) -> Self {
+        // Shadow rays on their way through glass ask for hits too, but of glass alone.
+        self.only(|asked| !asked.any && asked.classes == ClassMask::ALL && matches!(asked.origin, Values::Each(_)))
+    }
+
+    fn only(&self, wanted: impl Fn(&Asked) -> bool) -> Self {
+        Self { batches: self.batches.iter().filter(|asked| wanted(asked)).cloned().collect() }
+    }
+
+    /// `n` lines through `bounds`, none more likely than another, the same each time; none when the box has no area.
+    pub fn random(bounds: &Bounds, n: usize) -> Self {
+        let lines: Vec<GzRay> = RandomLines::through(bounds, 1).into_iter().flatten().take(n).collect();
+        let batch = |lines: &[GzRay]| Asked {
+            tmin: Values::One(f32::NEG_INFINITY),
+            ..Asked::unbounded(
+                Values::Each(lines.iter().map(|line| line.origin).collect()),
+                Values::Each(lines.iter().map(|line| line.direction).collect()),
+                vec![NO_TRI; lines.len()],
+            )
+        };
+        Self { batches: lines.chunks(RANDOM_BATCH).map(batch).collect() }
     }
 
     /// Each ray with the triangle that it leaves.
@@ -213,7 +248,7 @@ pub fn paper_rays(scene: &Scene, query: &dyn RayQuery) -> RaySet {
     let mut set = RaySet::default();
     for tile in TileGrid::whole(scene.camera.width(), scene.camera.height(), TILE).tiles() {
         let mut level: Vec<(GzRay, Option<TriId>)> =
-            tile.pixels().map(|(i, j)| (scene.camera.ray(i, j, DVec2::ZERO), None)).collect();
+            tile.in_squares().map(|(i, j)| (scene.camera.ray(i, j, DVec2::ZERO), None)).collect();
         for depth in 0..=3 {
             if level.is_empty() {
                 break;
@@ -236,7 +271,7 @@ fn level_batch(level: &[(GzRay, Option<TriId>)], primary: bool) -> Asked {
         Some((first, _)) if primary => Values::One(first.origin),
         _ => Values::Each(level.iter().map(|(ray, _)| ray.origin).collect()),
     };
-    Asked::unbounded(origins, directions, level.iter().map(|(_, leaves)| *leaves).collect())
+    Asked::unbounded(origins, directions, level.iter().map(|(_, leaves)| leaves.unwrap_or(NO_TRI)).collect())
 }
 
 /// The shadow rays of `hits`, one batch a light.
@@ -247,7 +282,7 @@ fn shadow_batches(scene: &Scene, hits: &[Hit], set: &mut RaySet) {
         for hit in hits.iter().filter(|hit| hit.is_hit()) {
             if let Some(origin) = leave_surface(scene.tris.position(hit.tri), hit.weights(), direction) {
                 origins.push(origin);
-                leaves.push(Some(hit.tri));
+                leaves.push(hit.tri);
             }
         }
         if !origins.is_empty() {

@@ -33,7 +33,7 @@ impl<'q> Recorder<'q> {
             tmax: Values::of(&rays.tmax),
             classes,
             any,
-            leaves: Vec::new(),
+            leaves: rays.leaves.map(<[_]>::to_vec).unwrap_or_default(),
         };
         self.asked.lock().unwrap_or_else(PoisonError::into_inner).push(asked);
     }

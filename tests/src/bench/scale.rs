@@ -1,5 +1,6 @@
-//! Build time, trace speed and memory of the self-tuned tree against the number of triangles.
+//! Build time, trace time and memory of the self-tuned tree against the number of triangles.
 
+use super::memory;
 use super::options::Options;
 use super::rays::{answers, differing, room, trace};
 use super::scenes::bench_scene;
@@ -20,17 +21,19 @@ const ROUNDS: usize = 3;
 const CHECKED_TESTS: f64 = 1e9;
 /// Below this many triangles build time is mostly what every build takes, and is left out of the exponent.
 const FITTED_FROM: usize = 4000;
+/// Triangles of [`memory::SCENE`].
+const LARGEST: usize = 10_240_000;
 
-/// `cargo xtask bench scale`: teapots up to `--limit` triangles.
+/// `cargo xtask bench scale`: teapots up to `--limit` triangles, and then the memory of a render of the largest, in a process of its own.
 ///
 /// # Errors
 ///
-/// If an answer differs.
+/// If an answer differs, or the render takes more memory than it may.
 pub fn run(options: &Options) -> Result<(), AppError> {
     let limit = options.limit.unwrap_or(usize::MAX);
-    let head = "triangles,build 1 thread s,build all threads s,Mtri/s,primary rays,Mrays/s,bytes/triangle,checked,differ";
+    let head = "triangles,build 1 thread s,build all threads s,Mtri/s,primary rays,ns/ray,Mrays/s,bytes/triangle,checked,differ";
     let mut rows = vec![head.split(',').map(str::to_owned).collect::<Vec<_>>()];
-    let (mut sizes, mut single, mut shared, mut wrong) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let (mut sizes, mut single, mut shared, mut traced, mut wrong) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), 0);
     for segments in SEGMENTS {
         // 64 triangles for every segment by segment of the 32 patches.
         if 64 * (segments * segments) as usize > limit {
@@ -62,13 +65,16 @@ pub fn run(options: &Options) -> Result<(), AppError> {
         sizes.push(tris.len() as f64);
         single.push(one);
         shared.push(all);
+        let per_ray = median(&traces) / rays.len().max(1) as f64;
+        traced.push(per_ray);
         rows.push(row![
             tris.len(),
             format!("{one:.4}"),
             format!("{all:.4}"),
             format!("{:.2}", tris.len() as f64 / all / 1e6),
             rays.len(),
-            format!("{:.2}", rays.len() as f64 / median(&traces) / 1e6),
+            format!("{:.0}", per_ray * 1e9),
+            format!("{:.2}", 1e-6 / per_ray),
             format!("{:.1}", tree.bytes() as f64 / tris.len() as f64),
             few.len(),
             differ,
@@ -77,28 +83,51 @@ pub fn run(options: &Options) -> Result<(), AppError> {
     }
     print!("{}", lines(&rows));
     let fitted = sizes.iter().position(|&n| n >= FITTED_FROM as f64).unwrap_or(0);
-    match (exponent(&sizes[fitted..], &single[fitted..]), exponent(&sizes[fitted..], &shared[fitted..])) {
-        (Some(one), Some(all)) => {
-            println!("build time grows as n^{one:.3} on one thread, n^{all:.3} on all (from {FITTED_FROM} triangles)")
+    println!("growth from {FITTED_FROM} triangles, by least squares of logarithms; the residual is its root mean square:");
+    for (what, times) in
+        [("build time on one thread", &single), ("build time on all threads", &shared), ("time of a primary ray", &traced)]
+    {
+        match Power::fit(&sizes[fitted..], &times[fitted..]) {
+            Some(Power { exponent, residual }) => println!("{what}: n^{exponent:.3}, residual {:.1}%", 100.0 * residual),
+            None => println!("{what}: too few sizes for an exponent"),
         }
-        _ => println!("too few sizes for an exponent"),
     }
     match wrong {
+        0 if limit >= LARGEST => alone(options),
         0 => Ok(()),
         n => Err(AppError::Differs(format!("{n} answers differ from those of brute force"))),
     }
 }
 
-/// The exponent e of the least-squares line of log y = e log x + c; `None` for fewer than two sizes.
-fn exponent(x: &[f64], y: &[f64]) -> Option<f64> {
-    let n = x.len() as f64;
-    let mean = |values: &[f64]| values.iter().map(|v| v.ln()).sum::<f64>() / n;
-    let (mx, my) = (mean(x), mean(y));
-    let (over, under) = x.iter().zip(y).fold((0.0, 0.0), |(over, under), (x, y)| {
-        let dx = x.ln() - mx;
-        (over + dx * (y.ln() - my), under + dx * dx)
-    });
-    (x.len() >= 2 && under > 0.0).then(|| over / under)
+/// Runs the memory bench in a process of its own, whose peak nothing else has a part in.
+fn alone(options: &Options) -> Result<(), AppError> {
+    let program = std::env::current_exe().map_err(|error| AppError::Io(format!("this program cannot be found: {error}")))?;
+    let mut command = std::process::Command::new(program);
+    command.args(["memory", "--scene", memory::SCENE, "--threads", &options.threads.to_string()]);
+    let status = command.status().map_err(|error| AppError::Io(format!("the memory bench cannot be started: {error}")))?;
+    if status.success() { Ok(()) } else { Err(AppError::Differs("the memory bench failed".to_owned())) }
+}
+
+/// A power of n.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Power {
+    exponent: f64,
+    /// Root mean square of what the logarithms are off by: nearly a relative error.
+    residual: f64,
+}
+
+impl Power {
+    /// The least-squares line of log y = e log x + c; `None` for fewer than two sizes.
+    fn fit(x: &[f64], y: &[f64]) -> Option<Self> {
+        let n = x.len() as f64;
+        let mean = |values: &[f64]| values.iter().map(|v| v.ln()).sum::<f64>() / n;
+        let (mx, my) = (mean(x), mean(y));
+        let off = || x.iter().zip(y).map(|(x, y)| (x.ln() - mx, y.ln() - my));
+        let (over, under) = off().fold((0.0, 0.0), |(over, under), (dx, dy)| (over + dx * dy, under + dx * dx));
+        let exponent = over / under;
+        let residual = (off().map(|(dx, dy)| (dy - exponent * dx).powi(2)).sum::<f64>() / n).sqrt();
+        (x.len() >= 2 && under > 0.0).then_some(Self { exponent, residual })
+    }
 }
 
 #[cfg(test)]
@@ -108,8 +137,21 @@ mod tests {
     #[test]
     fn the_exponent_of_a_power_is_found() {
         let x = [1e3, 1e4, 1e6];
-        let found = exponent(&x, &x.map(|x: f64| 3.0 * x.powf(1.1))).unwrap();
-        assert!((found - 1.1).abs() < 1e-9, "{found}");
-        assert_eq!(exponent(&x[..1], &x[..1]), None);
+        let exact = Power::fit(&x, &x.map(|x: f64| 3.0 * x.powf(1.1))).unwrap();
+        assert!((exact.exponent - 1.1).abs() < 1e-9 && exact.residual < 1e-9, "{exact:?}");
+        assert_eq!(Power::fit(&x[..1], &x[..1]), None);
+    }
+
+    #[test]
+    fn the_residual_is_what_a_power_leaves() {
+        // 1, 2, 1 at equal steps: the line is level, and off by -1/3, 2/3 and -1/3 of ln 2.
+        let fit = Power::fit(&[1.0, 10.0, 100.0], &[1.0, 2.0, 1.0]).unwrap();
+        assert!(fit.exponent.abs() < 1e-12 && (fit.residual - 2f64.ln() * 2f64.sqrt() / 3.0).abs() < 1e-12, "{fit:?}");
+    }
+
+    #[test]
+    fn the_largest_scene_is_as_large_as_it_says() {
+        let segments: usize = memory::SCENE.strip_prefix("teapot:").and_then(|n| n.parse().ok()).unwrap();
+        assert_eq!(64 * segments * segments, LARGEST);
     }
 }

@@ -36,30 +36,38 @@ pub fn has_course_data() -> bool {
     std::env::var_os("GZ_HW_DATA").is_some_and(|folder| Path::new(&folder).join("paper/reflection.asc").is_file())
 }
 
-/// The scene of this name: a stem of `assets/scenes`, a scene or mesh file, `teapot:SEGMENTS` or `uneven`, both made here.
-///
-/// The paper's scene has the rays of the paper's program; every other one the rays of its own render, one sample a pixel.
+/// The scene of this name with its rays: those of the paper's program for the paper's scene, for every other one the rays of its own
+/// render, one sample a pixel. Names are those of [`scene_of`].
 ///
 /// # Errors
 ///
 /// If it cannot be loaded.
 pub fn bench_scene(name: &str) -> Result<BenchScene, AppError> {
-    let (scene, needs) = match name.strip_prefix("teapot:") {
-        Some(segments) => {
-            let segments = segments.parse().ok().filter(|n| (1..=MAX_SEGMENTS).contains(n)).ok_or_else(|| {
-                AppError::Usage(format!("teapot:{segments} is not a number of segments from 1 to {MAX_SEGMENTS}"))
-            })?;
-            made(teapot(segments), DVec3::new(1.0, 0.6, 1.4).normalize() * 9.0 + DVec3::Y * 1.5, DVec3::Y * 1.5)?
-        }
-        None if name == "uneven" => made(uneven(), DVec3::new(2.4, 1.1, 2.0), DVec3::Y * 0.12)?,
-        None => loaded(&path_of(name), WIDTH)?,
-    };
+    let (scene, needs) = scene_of(name)?;
     let tree = BspTree::build(&scene.tris);
     let is_paper = Path::new(name).file_stem().is_some_and(|stem| stem == PAPER);
     let rays = if is_paper { paper_rays(&scene, &tree) } else { frame_rays(&scene, needs, &tree)? };
     drop(tree);
     let stand_in = if is_paper && !has_course_data() { " (its stand-in: GZ_HW_DATA names no course data)" } else { "" };
     Ok(BenchScene { name: format!("{name}{stand_in}"), tris: scene.tris, rays })
+}
+
+/// The scene of this name: a stem of `assets/scenes`, a scene or mesh file, `teapot:SEGMENTS` or `uneven`, both made here.
+///
+/// # Errors
+///
+/// If it cannot be loaded.
+pub fn scene_of(name: &str) -> Result<(Scene, SceneNeeds), AppError> {
+    match name.strip_prefix("teapot:") {
+        Some(segments) => {
+            let segments = segments.parse().ok().filter(|n| (1..=MAX_SEGMENTS).contains(n)).ok_or_else(|| {
+                AppError::Usage(format!("teapot:{segments} is not a number of segments from 1 to {MAX_SEGMENTS}"))
+            })?;
+            made(teapot(segments), DVec3::new(1.0, 0.6, 1.4).normalize() * 9.0 + DVec3::Y * 1.5, DVec3::Y * 1.5)
+        }
+        None if name == "uneven" => made(uneven(), DVec3::new(2.4, 1.1, 2.0), DVec3::Y * 0.12),
+        None => loaded(&path_of(name), WIDTH),
+    }
 }
 
 /// A name as a file: a stem of `assets/scenes`, or a file as it is.

@@ -64,7 +64,9 @@ impl Ratio {
 
 impl std::fmt::Display for Ratio {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:.2}x [{:.2}, {:.2}]", self.mean, self.low, self.high)
+        // Two decimals say nothing of a hundredth.
+        let decimals = if self.mean < 0.1 { 4 } else { 2 };
+        write!(f, "{:.decimals$}x [{:.decimals$}, {:.decimals$}]", self.mean, self.low, self.high)
     }
 }
 
@@ -103,7 +105,8 @@ mod tests {
         assert!((ratio.mean - 2.0).abs() < 1e-12 && ratio.low > 1.999 && ratio.high < 2.001, "{ratio}");
         let noisy = Ratio::of(&[2.0, 3.0, 2.5, 2.2], &[1.0, 1.2, 1.1, 1.3]);
         assert!(noisy.low < noisy.mean && noisy.mean < noisy.high, "{noisy}");
-        assert_eq!(Ratio::of(&[2.0], &[1.0]).high, f64::INFINITY);
+        assert_eq!(Ratio::of(&[2.0], &[1.0]).to_string(), "2.00x [0.00, inf]");
+        assert_eq!(Ratio::of(&[1.0, 1.0], &[256.0, 256.0]).to_string(), "0.0039x [0.0039, 0.0039]");
     }
 
     #[test]

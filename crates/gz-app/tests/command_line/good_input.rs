@@ -184,6 +184,18 @@ fn other_ways_to_leave_a_surface_are_for_comparison() {
 }
 
 #[test]
+fn the_tree_of_a_render_is_shown_on_request() {
+    let folder = Folder::with_scene("tree");
+    assert!(!folder.done("info scene.toml").out.contains("random lines"));
+    for (options, words) in [("", "groups of triangles"), ("--split midpoint --max-depth 6", "triangles tested")] {
+        let out = folder.done(&format!("info scene.toml --tree {options}")).out;
+        assert!(out.contains(words) && out.contains("of 10000 random lines through the scene's box (seed 1)"), "{out}");
+        assert_eq!(out, folder.done(&format!("info scene.toml --tree --threads 1 {options}")).out, "the same each time");
+    }
+    folder.fails("info scene.toml --tree --accel brute", 2, "--tree: brute force has no tree");
+}
+
+#[test]
 fn a_pixel_and_a_scene_are_explained() {
     let folder = Folder::with_scene("pixel");
     let out = folder.done("pixel scene.toml 16 14 --size 32x24 --compare brute").out;

@@ -36,11 +36,20 @@ pub(crate) fn build(tris: &TriBuffer, model: CostModel) -> Cell {
     let positions = tris.positions();
     let references: Vec<Reference> = (0..).zip(positions).map(|(tri, corners)| Reference::whole(tri, corners)).collect();
     // Deep enough for every useful cut, shallow enough that no input makes it endless.
-    let depth = 8 + (1.6 * (references.len().max(1) as f32).log2()) as u32;
+    let depth = most_cuts(references.len());
     // What cutting may add: a fixed multiple of the triangles, shared out among the halves of each cut.
     let room = 4 * references.len() + 64;
     Builder { positions, model }.cell(Part::of(references), depth, room)
 }
+
+/// Cuts one below the other, before leaves that are too large are halved.
+const fn most_cuts(triangles: usize) -> u32 {
+    // 1.6 for each doubling.
+    8 + (triangles as u64 + 1).ilog2() * 8 / 5
+}
+
+/// Levels of any tree: the cuts, and the halvings of the largest leaf.
+pub(super) const MOST_LEVELS: usize = most_cuts(u32::MAX as usize) as usize + 35;
 
 /// The references of a cell and the box around them.
 struct Part {

@@ -23,7 +23,7 @@ impl BspTree<'_> {
                 if child.is_none() {
                     continue;
                 }
-                let inner = self.nodes[at].bounds(slot);
+                let inner = self.space.shrink(&self.nodes[at].bounds(slot));
                 assert!(outer.holds(inner.min) && outer.holds(inner.max), "node {at}: a cell reaches out of its node");
                 match child.target() {
                     Target::Node(index) => open.push((index, inner)),

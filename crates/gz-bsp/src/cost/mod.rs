@@ -4,13 +4,15 @@
 //! that it reaches into. Where to cut and when to stop is decided by expected cost, boxes are tight around what a cell holds, which
 //! prices and cuts off empty space, and up to seven cuts are kept as one node of eight cells.
 
+mod batch;
 mod build;
 mod check;
 mod clip;
-mod packet;
+mod slabs;
 mod split;
 mod stats;
 mod tight;
+mod together;
 mod walk;
 mod wide;
 

@@ -2,8 +2,8 @@
 
 use super::build::{Cell, Content, build};
 use super::split::CostModel;
-use gz_core::kernel::TriGroup;
-use gz_core::{Bounds, GzCoord, SimdLevel, TriBuffer};
+use gz_core::kernel::{FilterSpace, TriGroup};
+use gz_core::{Bounds, SimdLevel, TriBuffer};
 
 /// Cells of a node.
 pub(crate) const WIDTH: usize = 8;
@@ -33,8 +33,9 @@ impl Child {
     const LEAF: u32 = 1 << 31;
     const COUNT_SHIFT: u32 = 28;
     const FIRST_MASK: u32 = (1 << Self::COUNT_SHIFT) - 1;
-    /// The root is nobody's child.
-    const NONE: Self = Self(0);
+    /// The root, which is nobody's child, stands for no child at all.
+    pub(crate) const NONE: Self = Self(0);
+    pub(crate) const ROOT: Self = Self(0);
 
     fn node(index: usize) -> Self {
         assert!(index != 0 && index < Self::LEAF as usize, "a tree of {index} nodes is beyond what an index holds");
@@ -97,8 +98,8 @@ pub struct BspTree<'a> {
     /// The root is the first; a tree without triangles has one node without cells.
     pub(crate) nodes: Vec<WideNode>,
     pub(crate) groups: Vec<TriGroup>,
-    /// The greatest magnitude of a coordinate along each axis.
-    pub(crate) reach: GzCoord,
+    /// Boxes and groups are in its coordinates.
+    pub(crate) space: FilterSpace,
 }
 
 impl<'a> BspTree<'a> {
@@ -109,8 +110,8 @@ impl<'a> BspTree<'a> {
 
     /// The same by another cost model.
     pub fn with_cost(tris: &'a TriBuffer, model: CostModel) -> Self {
-        let mut tree =
-            Self { tris, level: SimdLevel::best(), nodes: Vec::new(), groups: Vec::new(), reach: tris.bounds().reaches() };
+        let space = FilterSpace::new(tris.bounds().reaches());
+        let mut tree = Self { tris, level: SimdLevel::best(), nodes: Vec::new(), groups: Vec::new(), space };
         let root = build(tris, model);
         tree.place(&root);
         tree.nodes.shrink_to_fit();
@@ -156,12 +157,13 @@ impl<'a> BspTree<'a> {
                 Content::Leaf(ids) if ids.is_empty() => continue,
                 Content::Leaf(ids) => {
                     let first = self.groups.len();
-                    self.groups.extend(ids.chunks(8).map(|ids| TriGroup::new(ids, self.tris.positions())));
+                    self.groups.extend(ids.chunks(8).map(|ids| TriGroup::new(ids, self.tris.positions(), &self.space)));
                     Child::groups(first, self.groups.len() - first)
                 }
                 Content::Halves(_) => Child::node(self.place(cell)),
             };
-            self.nodes[index].set(slot, &cell.bounds, child);
+            let bounds = self.space.stretch(&cell.bounds);
+            self.nodes[index].set(slot, &bounds, child);
         }
         index
     }

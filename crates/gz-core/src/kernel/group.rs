@@ -1,32 +1,48 @@
-//! Eight triangles side by side, for the leaves of a tree.
+//! Eight triangles side by side, for the leaves of a tree, and one ray against them.
 
-use super::filter::{E, FLOOR, FilterRay};
-use crate::simd::Lanes;
+use super::filter::{FilterRay, Judged, distance, judge};
+use super::space::FilterSpace;
+use crate::simd::{Lanes, Simd, load3, splat3};
 use crate::{GzCoord, NO_TRI, TriId};
 
-/// Up to eight triangles, coordinate by coordinate, 320 bytes.
+/// Up to eight triangles, number by number, 352 bytes.
 ///
 /// Unused lanes repeat the first triangle and have the number [`NO_TRI`].
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub struct TriGroup {
-    /// `v[3 * corner + axis][lane]`.
-    v: [[f32; 8]; 9],
-    ids: [TriId; 8],
+    /// First corners: `a[axis][lane]`.
+    pub(super) a: [[f32; 8]; 3],
+    /// Edges from the first corner to the second, rounded.
+    pub(super) e1: [[f32; 8]; 3],
+    /// Edges from the first corner to the third.
+    pub(super) e2: [[f32; 8]; 3],
+    /// The greatest component of both edges.
+    pub(super) size: [f32; 8],
+    pub(super) ids: [TriId; 8],
 }
 
 impl TriGroup {
-    /// Groups the triangles `ids`, 1 to 8 of them, of `positions`; more are left out.
+    /// Groups the triangles `ids`, 1 to 8 of them, of `positions`, in the coordinates of `space`; more are left out.
     ///
     /// # Panics
     ///
     /// If `ids` is empty or names a triangle that does not exist.
-    pub fn new(ids: &[TriId], positions: &[[GzCoord; 3]]) -> Self {
-        let corners = |lane: usize| &positions[ids[if lane < ids.len() { lane } else { 0 }] as usize];
-        Self {
-            v: std::array::from_fn(|k| std::array::from_fn(|lane| corners(lane)[k / 3].to_array()[k % 3])),
-            ids: std::array::from_fn(|lane| ids.get(lane).copied().unwrap_or(NO_TRI)),
+    pub fn new(ids: &[TriId], positions: &[[GzCoord; 3]], space: &FilterSpace) -> Self {
+        let zero = [[0.0; 8]; 3];
+        let mut group = Self { a: zero, e1: zero, e2: zero, size: [0.0; 8], ids: [NO_TRI; 8] };
+        for lane in 0..8 {
+            let [a, b, c] = positions[ids[if lane < ids.len() { lane } else { 0 }] as usize];
+            let (a, e1, e2) = (a * space.scale, (b - a) * space.scale, (c - a) * space.scale);
+            for axis in 0..3 {
+                group.a[axis][lane] = a[axis];
+                group.e1[axis][lane] = e1[axis];
+                group.e2[axis][lane] = e2[axis];
+            }
+            group.size[lane] = e1.abs().max(e2.abs()).max_element();
+            group.ids[lane] = ids.get(lane).copied().unwrap_or(NO_TRI);
         }
+        group
     }
 
     /// The triangle of a lane, [`NO_TRI`] for an unused one.
@@ -44,36 +60,83 @@ impl TriGroup {
     ///
     /// The bound is derived in `filter.rs`.
     #[inline(always)]
-    pub fn survivors<L: Lanes>(&self, ray: &FilterRay) -> u32 {
-        let (x0, y0) = self.sheared::<L>(0, ray);
-        let (x1, y1) = self.sheared::<L>(1, ray);
-        let (x2, y2) = self.sheared::<L>(2, ray);
-        // Both coordinates have the other sign, so products keep theirs.
-        let u = x2.mul_sub(y1, y2.times(x1));
-        let v = x0.mul_sub(y2, y0.times(x2));
-        let w = x1.mul_sub(y0, y1.times(x0));
-        let [dx, dy] = ray.delta;
-        let mx = x0.abs().max(x1.abs()).max(x2.abs()).plus(L::splat(dx));
-        let my = y0.abs().max(y1.abs()).max(y2.abs()).plus(L::splat(dy));
-        let share = mx.mul_add(L::splat(5.0 * E), L::splat(2.1 * dx));
-        let bound = my.mul_add(share, mx.mul_add(L::splat(2.1 * dy), L::splat(FLOOR)));
-        let (least, most) = (u.min(v).min(w), u.max(v).max(w));
-        let below = least.plus(bound).below(L::splat(0.0));
-        let above = bound.below(most);
-        !(below & above) & 0xff
+    pub fn survivors<S: Simd>(&self, ray: &FilterRay) -> u32 {
+        Lines::<S::Eight>::of(self, ray).judged.possible()
     }
 
-    /// S z - x and the same for y, for one corner of each triangle. Not a closure: those are not compiled for the caller's SIMD level.
+    /// The triangles that the line of `ray` may meet, with where it meets them; `None` when there are none.
     #[inline(always)]
-    fn sheared<L: Lanes>(&self, corner: usize, ray: &FilterRay) -> (L, L) {
-        let [kx, ky, kz] = ray.axes;
-        let x = L::load(&self.v[3 * corner + kx]).minus(L::splat(ray.origin[0]));
-        let y = L::load(&self.v[3 * corner + ky]).minus(L::splat(ray.origin[1]));
-        let z = L::load(&self.v[3 * corner + kz]).minus(L::splat(ray.origin[2]));
-        (L::splat(ray.slope[0]).mul_sub(z, x), L::splat(ray.slope[1]).mul_sub(z, y))
+    pub fn candidates<S: Simd>(&self, ray: &FilterRay) -> Option<Candidates> {
+        let lines = Lines::<S::Eight>::of(self, ray);
+        match lines.judged.possible() {
+            0 => None,
+            possible => Some(lines.candidates(self, ray, possible)),
+        }
     }
 }
 
+/// What f32 knows of a ray and the triangles of a group that it may hit.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidates {
+    /// Lanes that are not excluded.
+    pub possible: u32,
+    /// Those of them that the ray's line surely meets, at t between `lo` and `hi`; an interval that is not finite means nothing.
+    pub sure: u32,
+    /// At most t.
+    pub lo: [f32; 8],
+    /// At least t.
+    pub hi: [f32; 8],
+}
+
+/// One ray against eight triangles, by the scheme of Moller and Trumbore: P = d x e2 gives V = A.P and D = -e1.P, Q = A x e1 gives W = d.Q
+/// and M = e2.Q, so the normal is not needed.
+struct Lines<L> {
+    judged: Judged<8, L>,
+    q: [L; 3],
+    along: L,
+    away: L,
+    size: L,
+}
+
+impl<L: Lanes<8>> Lines<L> {
+    #[inline(always)]
+    fn of(group: &TriGroup, ray: &FilterRay) -> Self {
+        let d = splat3(ray.direction);
+        let a = minus3(load3(&group.a), splat3(ray.origin));
+        let e1 = load3(&group.e1);
+        let p = cross(d, load3(&group.e2));
+        let q = cross(a, e1);
+        let v = dot(a, p);
+        let w = dot(d, q);
+        let along = L::splat(0.0).minus(dot(e1, p));
+        let u = along.minus(v).minus(w);
+        let (size, away) = (L::load(&group.size), a[0].abs().max(a[1].abs()).max(a[2].abs()));
+        Self { judged: judge(u, v, w, ray.margin.volume(size, away)), q, along, away, size }
+    }
+
+    #[inline(always)]
+    fn candidates(&self, group: &TriGroup, ray: &FilterRay, possible: u32) -> Candidates {
+        let m = dot(load3(&group.e2), self.q);
+        let (m_error, d_error) = (ray.margin.depth(self.size, self.away), ray.margin.along(self.size));
+        let (lo, hi, known) = distance(m, m_error, self.along, d_error);
+        Candidates { possible, sure: self.judged.sure() & known, lo: lo.array(), hi: hi.array() }
+    }
+}
+
+#[inline(always)]
+pub(super) fn cross<const N: usize, L: Lanes<N>>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    [a[1].mul_sub(b[2], a[2].times(b[1])), a[2].mul_sub(b[0], a[0].times(b[2])), a[0].mul_sub(b[1], a[1].times(b[0]))]
+}
+
+#[inline(always)]
+pub(super) fn minus3<const N: usize, L: Lanes<N>>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    [a[0].minus(b[0]), a[1].minus(b[1]), a[2].minus(b[2])]
+}
+
+#[inline(always)]
+pub(super) fn dot<const N: usize, L: Lanes<N>>(a: [L; 3], b: [L; 3]) -> L {
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2].times(b[2])))
+}
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,8 +150,8 @@ mod tests {
         type Output = u32;
 
         #[inline(always)]
-        fn run<L: Lanes>(self) -> u32 {
-            self.0.survivors::<L>(self.1)
+        fn run<S: Simd>(self) -> u32 {
+            self.0.survivors::<S>(self.1)
         }
     }
 
@@ -110,13 +173,14 @@ mod tests {
                     [p, p + (point(size) - offset), p + (point(size) - offset)]
                 })
                 .collect();
-            let group = TriGroup::new(&[0, 1, 2, 3, 4, 5, 6, 7], &positions);
+            let space = FilterSpace::new(Bounds::of(positions.iter().flatten().copied()).reaches());
+            let group = TriGroup::new(&[0, 1, 2, 3, 4, 5, 6, 7], &positions, &space);
             let target = positions[round % 8];
             // At a corner, at the middle of an edge, inside.
             let at = [target[0], (target[0] + target[1]) * 0.5, (target[0] + target[1] + target[2]) / 3.0][round % 3];
             let origin = point(1.0) - GzCoord::Z * 2.0;
             let ray = GzRay::new(origin, at - origin);
-            let filter = FilterRay::new(&ray, Bounds::of(positions.iter().flatten().copied()).reaches()).unwrap();
+            let filter = FilterRay::new(&ray, &space).unwrap();
             for &level in SimdLevel::available() {
                 let mask = dispatch(level, Ask(&group, &filter));
                 for (lane, corners) in positions.iter().enumerate() {

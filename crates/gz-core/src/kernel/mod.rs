@@ -1,25 +1,34 @@
 //! Ray against triangle: a conservative filter, a certified f64 test, and an exact stage behind both.
 
+mod answer;
 mod baldwin_weber;
+mod bundle;
 mod certify;
 mod dyadic;
 mod exact;
 mod filter;
 mod group;
 mod moeller_trumbore;
+mod nearest;
 mod order;
 mod plain;
 mod plane;
 mod pluecker;
 mod quotient;
+mod solution;
+mod space;
+mod together;
 mod woop;
 
-pub use certify::hit_weights;
+pub use answer::hit_weights;
+pub use bundle::{BUNDLE, Each, LANES, PACKETS, RayBundle, Rays, Row, count, greatest, least};
 pub(crate) use exact::side_sign;
 pub use filter::FilterRay;
-pub use group::TriGroup;
+pub use group::{Candidates, TriGroup};
+pub use nearest::Nearest;
 pub use order::{Closest, is_hit};
 pub use plain::plain;
+pub use space::FilterSpace;
 
 /// Which ray-triangle test answers a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! The one order of hits: exact t first, then the lower triangle number.
 
-use super::certify::{Verdict, certify, t_u_v};
+use super::answer::t_u_v;
+use super::certify::{Verdict, certify};
 use super::exact::ExactHit;
 use crate::{GzCoord, GzRay, Hit, TriId};
 use std::cmp::Ordering;
@@ -63,6 +64,16 @@ impl Closest {
             Hit { t, tri: best.tri, u, v }
         })
     }
+}
+
+/// Whether triangle `tri` is hit by a valid ray before `best`, a triangle that it hits too; if so, an interval of f32 around its t.
+pub(crate) fn closer(ray: &GzRay, best: Option<TriId>, tri: TriId, positions: &[[GzCoord; 3]]) -> Option<(f32, f32)> {
+    let mut closest = Closest::default();
+    if let Some(best) = best {
+        closest.consider(ray, best, positions);
+    }
+    closest.consider(ray, tri, positions);
+    closest.best.filter(|best| best.tri == tri).map(|Candidate { lo, hi, .. }| ((lo as f32).next_down(), (hi as f32).next_up()))
 }
 
 /// Whether a valid ray hits a triangle.

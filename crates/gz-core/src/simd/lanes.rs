@@ -1,24 +1,34 @@
-//! Eight f32 side by side, and how a task gets the best form of them.
+//! Numbers side by side, and how a task gets the best form of them.
 
 use super::SimdLevel;
 
-/// Eight f32 numbers worked on together.
+/// `N` f32 numbers worked on together.
 ///
 /// Implementations differ in speed and in whether [`Self::mul_add`] rounds once or twice; code over lanes may only take decisions that
-/// are right for both. A NaN operand of `min` and `max` gives either operand.
-pub trait Lanes: Copy {
+/// are right for both. A NaN operand of `min` and `max` gives either operand. Where lanes are told by bits, bit `i` stands for lane `i`.
+pub trait Lanes<const N: usize>: Copy {
     /// All lanes `x`.
     fn splat(x: f32) -> Self;
     /// Lane `i` is `x[i]`.
-    fn load(x: &[f32; 8]) -> Self;
-    /// The lanes as an array.
-    fn store(self) -> [f32; 8];
+    fn load(x: &[f32; N]) -> Self;
+    /// Writes lane `i` to `to[i]`.
+    fn store(self, to: &mut [f32; N]);
+    /// `self` where the bit is set, `other` elsewhere.
+    fn select(self, bits: u32, other: Self) -> Self;
+    /// Where `self` and `other` have equal bits.
+    fn same_bits(self, other: Self) -> u32;
+    /// The least lane; none is NaN.
+    fn least(self) -> f32;
+    /// The greatest lane; none is NaN.
+    fn greatest(self) -> f32;
     /// Lane by lane `self + other`.
     fn plus(self, other: Self) -> Self;
     /// Lane by lane `self - other`.
     fn minus(self, other: Self) -> Self;
     /// Lane by lane `self * other`.
     fn times(self, other: Self) -> Self;
+    /// Lane by lane `self / other`.
+    fn over(self, other: Self) -> Self;
     /// Lane by lane `self * factor + term`, with one or two roundings.
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// Lane by lane `self * factor - term`, with one or two roundings.
@@ -29,27 +39,381 @@ pub trait Lanes: Copy {
     fn min(self, other: Self) -> Self;
     /// The greater of each lane.
     fn max(self, other: Self) -> Self;
-    /// Bit `i` is set where lane `i` of `self` is at most that of `other`; clear for NaN.
+    /// Where `self` is at most `other`; clear for NaN.
     fn at_most(self, other: Self) -> u32;
-    /// Bit `i` is set where lane `i` of `self` is below that of `other`; clear for NaN.
+    /// Where `self` is below `other`; clear for NaN.
     fn below(self, other: Self) -> u32;
+    /// Where `ids` are `id`.
+    fn same(ids: &[u32; N], id: u32) -> u32;
+    /// Sets `ids` to `id` where the bit is set.
+    fn set_some(id: u32, bits: u32, ids: &mut [u32; N]);
+
+    /// The coordinates of points: lane `i` of result `k` is `points[i][k]`.
+    #[inline(always)]
+    fn unzip3(points: &[[f32; 3]; N]) -> [Self; 3] {
+        let mut rows = [[0.0; N]; 3];
+        for (i, point) in points.iter().enumerate() {
+            for (row, x) in rows.iter_mut().zip(point) {
+                row[i] = *x;
+            }
+        }
+        [Self::load(&rows[0]), Self::load(&rows[1]), Self::load(&rows[2])]
+    }
+
+    /// The lanes as an array.
+    #[inline(always)]
+    fn array(self) -> [f32; N] {
+        let mut out = [0.0; N];
+        self.store(&mut out);
+        out
+    }
 }
 
-/// Work written once over [`Lanes`]; its `run` and all below it must be `#[inline(always)]` to be compiled for each level.
+/// Three rows of numbers, such as the coordinates of points.
+///
+/// Written out, like all that works on lanes: what a closure does is not compiled for the level of its caller.
+#[inline(always)]
+pub fn load3<const N: usize, L: Lanes<N>>(rows: &[[f32; N]; 3]) -> [L; 3] {
+    [L::load(&rows[0]), L::load(&rows[1]), L::load(&rows[2])]
+}
+
+/// Three numbers, each in all lanes.
+#[inline(always)]
+pub fn splat3<const N: usize, L: Lanes<N>>(x: [f32; 3]) -> [L; 3] {
+    [L::splat(x[0]), L::splat(x[1]), L::splat(x[2])]
+}
+
+/// Three times the lanes as arrays.
+#[inline(always)]
+pub fn arrays3<const N: usize, L: Lanes<N>>(x: [L; 3]) -> [[f32; N]; 3] {
+    [x[0].array(), x[1].array(), x[2].array()]
+}
+
+/// One f64 or several side by side: the operations that round alike everywhere, so that answers may depend on them to the bit.
+pub trait Doubles: Copy {
+    /// `self + other`.
+    fn plus(self, other: Self) -> Self;
+    /// `self - other`.
+    fn minus(self, other: Self) -> Self;
+    /// `self * other`.
+    fn times(self, other: Self) -> Self;
+    /// `self / other`.
+    fn over(self, other: Self) -> Self;
+    /// `self` without its sign.
+    fn abs(self) -> Self;
+    /// `x` everywhere.
+    fn splat(x: f64) -> Self;
+    /// `self` where it is above `other`, else `other`.
+    fn or_more(self, other: Self) -> Self;
+    /// `self` where it is below `other`, else `other`.
+    fn or_less(self, other: Self) -> Self;
+}
+
+/// Eight [`Doubles`].
+pub trait EightDoubles: Doubles {
+    /// Lane `i` is `x[i]`.
+    fn load(x: &[f64; 8]) -> Self;
+    /// Lane `i` is `x[i]`, widened.
+    fn widen(x: &[f32; 8]) -> Self;
+    /// The lanes as an array.
+    fn array(self) -> [f64; 8];
+    /// The lanes rounded to f32.
+    fn narrow(self, to: &mut [f32; 8]);
+    /// Where `self` is at most `other`; clear for NaN.
+    fn at_most(self, other: Self) -> u32;
+
+    /// The coordinates of points: lane `i` of result `k` is `points[i][k]`.
+    #[inline(always)]
+    fn unzip3(points: &[[f64; 3]; 8]) -> [Self; 3] {
+        let mut rows = [[0.0; 8]; 3];
+        for (i, point) in points.iter().enumerate() {
+            for (row, x) in rows.iter_mut().zip(point) {
+                row[i] = *x;
+            }
+        }
+        [Self::load(&rows[0]), Self::load(&rows[1]), Self::load(&rows[2])]
+    }
+}
+
+/// A set of vector instructions: the lanes that it has.
+pub trait Simd {
+    /// Eight f64.
+    type Doubles: EightDoubles;
+    /// Eight numbers.
+    type Eight: Lanes<8>;
+    /// Sixteen numbers.
+    type Sixteen: Lanes<16>;
+
+    /// The lanes widened.
+    fn widen(x: Self::Eight) -> Self::Doubles;
+
+    /// The coordinates of the corners of eight triangles: lane `i` of number `3 c + k` is coordinate `k` of corner `c` of `corners[i]`.
+    #[inline(always)]
+    fn corners(corners: &[&[f32; 9]; 8]) -> [Self::Eight; 9] {
+        let mut rows = [[0.0; 8]; 9];
+        for (i, nine) in corners.iter().enumerate() {
+            for (row, x) in rows.iter_mut().zip(nine.iter()) {
+                row[i] = *x;
+            }
+        }
+        [
+            Self::Eight::load(&rows[0]),
+            Self::Eight::load(&rows[1]),
+            Self::Eight::load(&rows[2]),
+            Self::Eight::load(&rows[3]),
+            Self::Eight::load(&rows[4]),
+            Self::Eight::load(&rows[5]),
+            Self::Eight::load(&rows[6]),
+            Self::Eight::load(&rows[7]),
+            Self::Eight::load(&rows[8]),
+        ]
+    }
+
+    /// Asks for the cache lines of `what` ahead of its use.
+    fn prefetch<T>(what: &T);
+}
+
+/// Work written once over [`Simd`]; its `run` and all below it must be `#[inline(always)]` to be compiled for each level.
 pub trait Task {
     /// What the work gives.
     type Output;
     /// The work.
-    fn run<L: Lanes>(self) -> Self::Output;
+    fn run<S: Simd>(self) -> Self::Output;
 }
 
 /// Runs `task` with the instructions of `level`, or of the best level where this machine lacks it.
 pub fn dispatch<T: Task>(level: SimdLevel, task: T) -> T::Output {
     match level.or_best() {
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: `or_best` returns no level above `best`, and `available` lists these only where AVX2 and FMA were detected.
-        SimdLevel::Avx2 | SimdLevel::Avx512 => unsafe { x86::run(task) },
-        _ => task.run::<Portable>(),
+        // SAFETY: `or_best` returns no level above `best`, and `available` lists this one only where its features were detected.
+        SimdLevel::Avx512 => unsafe { super::x86::run_avx512(task) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        SimdLevel::Avx2 => unsafe { super::x86::run_avx2(task) },
+        _ => task.run::<PortableSimd>(),
+    }
+}
+
+struct PortableSimd;
+
+impl Simd for PortableSimd {
+    type Doubles = PortableDoubles;
+    type Eight = Portable;
+    type Sixteen = Pair<Portable>;
+
+    #[inline(always)]
+    fn widen(x: Portable) -> PortableDoubles {
+        PortableDoubles(x.0.map(f64::from))
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(_what: &T) {}
+}
+
+/// Two times eight lanes.
+#[derive(Clone, Copy)]
+pub(super) struct Pair<L>(L, L);
+
+/// Both halves of sixteen numbers.
+#[inline(always)]
+fn halves<T>(x: &[T; 16]) -> (&[T; 8], &[T; 8]) {
+    match x.split_first_chunk::<8>().map(|(low, high)| (low, high.first_chunk::<8>())) {
+        Some((low, Some(high))) => (low, high),
+        _ => unreachable!("sixteen is twice eight"),
+    }
+}
+
+#[inline(always)]
+fn halves_mut<T>(x: &mut [T; 16]) -> (&mut [T; 8], &mut [T; 8]) {
+    match x.split_first_chunk_mut::<8>().map(|(low, high)| (low, high.first_chunk_mut::<8>())) {
+        Some((low, Some(high))) => (low, high),
+        _ => unreachable!("sixteen is twice eight"),
+    }
+}
+
+impl<L: Lanes<8>> Lanes<16> for Pair<L> {
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Self(L::splat(x), L::splat(x))
+    }
+    #[inline(always)]
+    fn load(x: &[f32; 16]) -> Self {
+        let (low, high) = halves(x);
+        Self(L::load(low), L::load(high))
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32; 16]) {
+        let (low, high) = halves_mut(to);
+        self.0.store(low);
+        self.1.store(high);
+    }
+    #[inline(always)]
+    fn select(self, bits: u32, other: Self) -> Self {
+        Self(self.0.select(bits & 0xff, other.0), self.1.select(bits >> 8 & 0xff, other.1))
+    }
+    #[inline(always)]
+    fn same_bits(self, other: Self) -> u32 {
+        self.0.same_bits(other.0) | self.1.same_bits(other.1) << 8
+    }
+    #[inline(always)]
+    fn least(self) -> f32 {
+        self.0.min(self.1).least()
+    }
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        self.0.max(self.1).greatest()
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self(self.0.plus(other.0), self.1.plus(other.1))
+    }
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        Self(self.0.minus(other.0), self.1.minus(other.1))
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        Self(self.0.times(other.0), self.1.times(other.1))
+    }
+    #[inline(always)]
+    fn over(self, other: Self) -> Self {
+        Self(self.0.over(other.0), self.1.over(other.1))
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        Self(self.0.mul_add(factor.0, term.0), self.1.mul_add(factor.1, term.1))
+    }
+    #[inline(always)]
+    fn mul_sub(self, factor: Self, term: Self) -> Self {
+        Self(self.0.mul_sub(factor.0, term.0), self.1.mul_sub(factor.1, term.1))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0), self.1.min(other.1))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0), self.1.max(other.1))
+    }
+    #[inline(always)]
+    fn at_most(self, other: Self) -> u32 {
+        self.0.at_most(other.0) | self.1.at_most(other.1) << 8
+    }
+    #[inline(always)]
+    fn below(self, other: Self) -> u32 {
+        self.0.below(other.0) | self.1.below(other.1) << 8
+    }
+    #[inline(always)]
+    fn same(ids: &[u32; 16], id: u32) -> u32 {
+        let (low, high) = halves(ids);
+        L::same(low, id) | L::same(high, id) << 8
+    }
+    #[inline(always)]
+    fn set_some(id: u32, bits: u32, ids: &mut [u32; 16]) {
+        let (low, high) = halves_mut(ids);
+        L::set_some(id, bits & 0xff, low);
+        L::set_some(id, bits >> 8 & 0xff, high);
+    }
+}
+
+impl Doubles for f64 {
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        self + other
+    }
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        self - other
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        self * other
+    }
+    #[inline(always)]
+    fn over(self, other: Self) -> Self {
+        self / other
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn or_more(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn or_less(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+}
+
+/// Eight f64 in an array.
+#[derive(Clone, Copy)]
+struct PortableDoubles([f64; 8]);
+
+impl Doubles for PortableDoubles {
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] - other.0[i]))
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] * other.0[i]))
+    }
+    #[inline(always)]
+    fn over(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] / other.0[i]))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f64::abs))
+    }
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self([x; 8])
+    }
+    #[inline(always)]
+    fn or_more(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i].or_more(other.0[i])))
+    }
+    #[inline(always)]
+    fn or_less(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i].or_less(other.0[i])))
+    }
+}
+
+impl EightDoubles for PortableDoubles {
+    #[inline(always)]
+    fn load(x: &[f64; 8]) -> Self {
+        Self(*x)
+    }
+    #[inline(always)]
+    fn widen(x: &[f32; 8]) -> Self {
+        Self(x.map(f64::from))
+    }
+    #[inline(always)]
+    fn array(self) -> [f64; 8] {
+        self.0
+    }
+    #[inline(always)]
+    fn narrow(self, to: &mut [f32; 8]) {
+        *to = self.0.map(|x| x as f32);
+    }
+    #[inline(always)]
+    fn at_most(self, other: Self) -> u32 {
+        bits(|i| self.0[i] <= other.0[i])
     }
 }
 
@@ -63,15 +427,15 @@ fn each(a: Portable, b: Portable, f: impl Fn(f32, f32) -> f32) -> Portable {
 }
 
 #[inline(always)]
-fn bits(a: Portable, b: Portable, f: impl Fn(f32, f32) -> bool) -> u32 {
+fn bits(holds: impl Fn(usize) -> bool) -> u32 {
     let mut out = 0;
     for i in 0..8 {
-        out |= u32::from(f(a.0[i], b.0[i])) << i;
+        out |= u32::from(holds(i)) << i;
     }
     out
 }
 
-impl Lanes for Portable {
+impl Lanes<8> for Portable {
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self([x; 8])
@@ -81,8 +445,24 @@ impl Lanes for Portable {
         Self(*x)
     }
     #[inline(always)]
-    fn store(self) -> [f32; 8] {
-        self.0
+    fn store(self, to: &mut [f32; 8]) {
+        *to = self.0;
+    }
+    #[inline(always)]
+    fn select(self, bits: u32, other: Self) -> Self {
+        Self(std::array::from_fn(|i| if bits >> i & 1 != 0 { self.0[i] } else { other.0[i] }))
+    }
+    #[inline(always)]
+    fn same_bits(self, other: Self) -> u32 {
+        bits(|i| self.0[i].to_bits() == other.0[i].to_bits())
+    }
+    #[inline(always)]
+    fn least(self) -> f32 {
+        self.0.into_iter().fold(f32::INFINITY, f32::min)
+    }
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
     }
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
@@ -95,6 +475,10 @@ impl Lanes for Portable {
     #[inline(always)]
     fn times(self, other: Self) -> Self {
         each(self, other, |a, b| a * b)
+    }
+    #[inline(always)]
+    fn over(self, other: Self) -> Self {
+        each(self, other, |a, b| a / b)
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
@@ -118,96 +502,20 @@ impl Lanes for Portable {
     }
     #[inline(always)]
     fn at_most(self, other: Self) -> u32 {
-        bits(self, other, |a, b| a <= b)
+        bits(|i| self.0[i] <= other.0[i])
     }
     #[inline(always)]
     fn below(self, other: Self) -> u32 {
-        bits(self, other, |a, b| a < b)
+        bits(|i| self.0[i] < other.0[i])
     }
-}
-
-#[cfg(target_arch = "x86_64")]
-mod x86 {
-    use super::{Lanes, Task};
-    use std::arch::x86_64::*;
-
-    /// One AVX register. Private, so that a value or a method of it is reached through [`run`] alone, where AVX2 and FMA exist.
-    #[derive(Clone, Copy)]
-    pub(super) struct Avx2(__m256);
-
-    #[target_feature(enable = "avx2,fma")]
-    pub(super) fn run<T: Task>(task: T) -> T::Output {
-        task.run::<Avx2>()
+    #[inline(always)]
+    fn same(ids: &[u32; 8], id: u32) -> u32 {
+        bits(|i| ids[i] == id)
     }
-
-    /// Calls an intrinsic on registers.
-    macro_rules! call {
-        ($intrinsic:ident $(::<$n:ident>)? ($($arg:expr),*)) => {
-            // SAFETY: `Avx2` is private to this module and named only in `run`, whose caller has detected AVX2 and FMA; these
-            // intrinsics have no other precondition.
-            unsafe { $intrinsic $(::<$n>)? ($($arg),*) }
-        };
-    }
-
-    impl Lanes for Avx2 {
-        #[inline(always)]
-        fn splat(x: f32) -> Self {
-            Self(call!(_mm256_set1_ps(x)))
-        }
-        #[inline(always)]
-        fn load(x: &[f32; 8]) -> Self {
-            // SAFETY: reads the 32 bytes of `x`, unaligned; AVX2 as above.
-            Self(unsafe { _mm256_loadu_ps(x.as_ptr()) })
-        }
-        #[inline(always)]
-        fn store(self) -> [f32; 8] {
-            let mut out = [0.0; 8];
-            // SAFETY: writes the 32 bytes of `out`, unaligned; AVX2 as above.
-            unsafe { _mm256_storeu_ps(out.as_mut_ptr(), self.0) };
-            out
-        }
-        #[inline(always)]
-        fn plus(self, other: Self) -> Self {
-            Self(call!(_mm256_add_ps(self.0, other.0)))
-        }
-        #[inline(always)]
-        fn minus(self, other: Self) -> Self {
-            Self(call!(_mm256_sub_ps(self.0, other.0)))
-        }
-        #[inline(always)]
-        fn times(self, other: Self) -> Self {
-            Self(call!(_mm256_mul_ps(self.0, other.0)))
-        }
-        #[inline(always)]
-        fn mul_add(self, factor: Self, term: Self) -> Self {
-            Self(call!(_mm256_fmadd_ps(self.0, factor.0, term.0)))
-        }
-        #[inline(always)]
-        fn mul_sub(self, factor: Self, term: Self) -> Self {
-            Self(call!(_mm256_fmsub_ps(self.0, factor.0, term.0)))
-        }
-        #[inline(always)]
-        fn abs(self) -> Self {
-            let sign = call!(_mm256_set1_ps(-0.0));
-            Self(call!(_mm256_andnot_ps(sign, self.0)))
-        }
-        #[inline(always)]
-        fn min(self, other: Self) -> Self {
-            Self(call!(_mm256_min_ps(self.0, other.0)))
-        }
-        #[inline(always)]
-        fn max(self, other: Self) -> Self {
-            Self(call!(_mm256_max_ps(self.0, other.0)))
-        }
-        #[inline(always)]
-        fn at_most(self, other: Self) -> u32 {
-            let lanes = call!(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0));
-            call!(_mm256_movemask_ps(lanes)) as u32
-        }
-        #[inline(always)]
-        fn below(self, other: Self) -> u32 {
-            let lanes = call!(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0));
-            call!(_mm256_movemask_ps(lanes)) as u32
+    #[inline(always)]
+    fn set_some(id: u32, bits: u32, ids: &mut [u32; 8]) {
+        for (i, to) in ids.iter_mut().enumerate() {
+            *to = if bits >> i & 1 != 0 { id } else { *to };
         }
     }
 }
@@ -218,29 +526,44 @@ mod tests {
 
     struct All;
 
+    /// What each operation gives on `a`, `b` and twos, and the bits of each question.
+    #[inline(always)]
+    fn everything<const N: usize, L: Lanes<N>>(a: [f32; N], b: [f32; N]) -> (Vec<f32>, Vec<u32>) {
+        let (a, b, c) = (L::load(&a), L::load(&b), L::splat(2.0));
+        let some = a.select(0b1010_0110_0011_0101, L::splat(5.0)).array().into_iter().chain([a.least(), a.greatest()]);
+        let mut ids = std::array::from_fn(|i| i as u32 % 3);
+        let two = L::same(&ids, 2);
+        L::set_some(u32::MAX, 0b1001_0110_0011_0101, &mut ids);
+        let numbers =
+            [a.plus(b), a.minus(b), a.times(b), a.over(c), a.mul_add(b, c), a.mul_sub(b, c), a.min(b), a.max(b), a.abs()]
+                .into_iter()
+                .flat_map(L::array)
+                .chain(some)
+                .collect();
+        (numbers, [a.at_most(b), a.below(b), two].into_iter().chain(ids).collect())
+    }
+
     impl Task for All {
-        type Output = Vec<f32>;
+        type Output = [(Vec<f32>, Vec<u32>); 2];
 
         #[inline(always)]
-        fn run<L: Lanes>(self) -> Vec<f32> {
-            let a = L::load(&[1.0, -2.0, 3.5, 0.0, -0.5, 8.0, 1e30, 7.0]);
-            let b = L::load(&[2.0, -2.0, 0.25, 4.0, 16.0, -1.0, 1.0, 7.5]);
-            let c = L::splat(2.0);
-            let mut out: Vec<f32> =
-                [a.plus(b), a.minus(b), a.times(b), a.mul_add(b, c), a.mul_sub(b, c), a.min(b), a.max(b), a.abs()]
-                    .into_iter()
-                    .flat_map(L::store)
-                    .collect();
-            out.extend([a.at_most(b), a.below(b)].map(|bits| bits as f32));
-            out
+        fn run<S: Simd>(self) -> Self::Output {
+            let a = [1.0, -2.0, 3.5, 0.0, -0.5, 8.0, 1e30, 7.0];
+            let b = [2.0, -2.0, 0.25, 4.0, 16.0, -1.0, 1.0, 7.5];
+            let twice = |x: [f32; 8]| std::array::from_fn(|i| if i < 8 { x[i] } else { -x[i - 8] });
+            [everything::<8, S::Eight>(a, b), everything::<16, S::Sixteen>(twice(a), twice(b))]
         }
     }
 
     #[test]
     fn every_level_gives_the_same_on_numbers_that_do_not_round() {
         let expected = dispatch(SimdLevel::Portable, All);
-        assert_eq!(expected[..8], [3.0, -4.0, 3.75, 4.0, 15.5, 7.0, 1e30, 14.5]);
-        assert_eq!(expected[64..], [f32::from(0b1001_1011u8), f32::from(0b1001_1001u8)]);
+        let (numbers, bits) = &expected[0];
+        assert_eq!(numbers[..8], [3.0, -4.0, 3.75, 4.0, 15.5, 7.0, 1e30, 14.5]);
+        assert_eq!(numbers[72..], [1.0, 5.0, 3.5, 5.0, -0.5, 8.0, 5.0, 5.0, -2.0, 1e30]);
+        const ALL: u32 = u32::MAX;
+        assert_eq!(bits[..], [0b1001_1011, 0b1001_1001, 0b0010_0100, ALL, 1, ALL, 0, ALL, ALL, 0, 1]);
+        assert_eq!(expected[1].1[..3], [0b0110_0110_1001_1011, 0b0110_0100_1001_1001, 0b0100_1001_0010_0100]);
         for &level in SimdLevel::available() {
             assert_eq!(dispatch(level, All), expected, "{level:?}");
         }

@@ -3,10 +3,14 @@
 
 mod control;
 mod lanes;
+mod view;
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
 pub use control::with_default_float_control;
-pub use lanes::{Lanes, Task, dispatch};
+pub use lanes::{Doubles, EightDoubles, Lanes, Simd, Task, arrays3, dispatch, load3, splat3};
 use std::sync::OnceLock;
+pub use view::{coordinates, coordinates_f64, nine};
 
 /// A set of vector instructions that kernels are compiled for. Answers do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -15,7 +19,7 @@ pub enum SimdLevel {
     Portable,
     /// AVX2 with fused multiply-add, 8 f32 at a time.
     Avx2,
-    /// AVX-512 F, VL, DQ and BW; [`Lanes`] are eight f32 here too.
+    /// AVX-512 F, VL, DQ and BW, with the bit operations of AVX2's time: sixteen f32 at a time.
     Avx512,
 }
 
@@ -31,7 +35,12 @@ impl SimdLevel {
         #[cfg(target_arch = "x86_64")]
         {
             let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+            let bits = is_x86_feature_detected!("bmi1")
+                && is_x86_feature_detected!("bmi2")
+                && is_x86_feature_detected!("lzcnt")
+                && is_x86_feature_detected!("popcnt");
             let avx512 = avx2
+                && bits
                 && is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512vl")
                 && is_x86_feature_detected!("avx512dq")

@@ -1,0 +1,258 @@
+//! The questions, a bundle of rays at a time.
+// Packets, axes and lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
+use super::slabs::BundleSlabs;
+use super::together::{AnyOf, ClosestOf, Queue};
+use super::walk::{Blocked, NearestOf, Stack};
+use super::wide::{BspTree, Child};
+use crate::Visits;
+use gz_core::kernel::{BUNDLE, LANES, Nearest, PACKETS, RayBundle, Rays, count};
+use gz_core::simd::{Simd, Task, dispatch};
+use gz_core::{ClassMask, GzRay, Hit, PerRay, RayBatch, RayQuery, Targets, TriBuffer, with_default_float_control};
+
+use std::cell::Cell;
+use std::ops::{Deref, DerefMut};
+
+/// Rays that go the same way go together from this number on.
+const COMPANY: u32 = 8;
+
+/// The first ray of a set.
+#[inline(always)]
+fn first(rays: &Rays) -> Option<(usize, usize)> {
+    (0..PACKETS).find(|&p| rays[p] != 0).map(|p| (p, rays[p].trailing_zeros() as usize))
+}
+
+impl RayQuery for BspTree<'_> {
+    fn tris(&self) -> &TriBuffer {
+        self.tris
+    }
+
+    fn closest_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, hits: &mut [Hit]) {
+        assert_eq!(rays.len(), hits.len(), "one hit a ray");
+        let targets = Targets::new(self.tris, classes);
+        with_default_float_control(|| dispatch(self.level, ClosestTask { tree: self, rays, targets, hits, visits: &mut () }));
+    }
+
+    fn any_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "one answer a ray");
+        let targets = Targets::new(self.tris, classes);
+        with_default_float_control(|| dispatch(self.level, AnyTask { tree: self, rays, targets, occluded, visits: &mut () }));
+    }
+}
+
+impl BspTree<'_> {
+    /// The front-most hit of one ray, telling `visits` of each step.
+    pub fn closest_hit_counted(&self, ray: &GzRay, classes: ClassMask, visits: &mut impl Visits) -> Hit {
+        let mut hit = [Hit::MISS];
+        let (rays, targets) = (of_one(ray), Targets::new(self.tris, classes));
+        let task = ClosestTask { tree: self, rays: &rays, targets, hits: &mut hit, visits };
+        with_default_float_control(|| dispatch(self.level, task));
+        hit[0]
+    }
+
+    /// Whether one ray hits anything, telling `visits` of each step.
+    pub fn any_hit_counted(&self, ray: &GzRay, classes: ClassMask, visits: &mut impl Visits) -> bool {
+        let mut occluded = [false];
+        let (rays, targets) = (of_one(ray), Targets::new(self.tris, classes));
+        let task = AnyTask { tree: self, rays: &rays, targets, occluded: &mut occluded, visits };
+        with_default_float_control(|| dispatch(self.level, task));
+        occluded[0]
+    }
+}
+
+fn of_one(ray: &GzRay) -> RayBatch<'static> {
+    RayBatch::new(1, PerRay::One(ray.origin), PerRay::One(ray.direction), PerRay::One(ray.tmin), PerRay::One(ray.tmax))
+}
+
+/// What a batch is worked on with: memory alone, kept by each thread from batch to batch, as filling it anew would take longer than many
+/// a batch.
+struct Desk {
+    bundle: RayBundle,
+    slabs: BundleSlabs,
+    queue: Queue,
+    stack: Stack,
+}
+
+thread_local! {
+    static DESK: Cell<Option<Box<Desk>>> = const { Cell::new(None) };
+}
+
+/// A desk on loan.
+struct Loan(Option<Box<Desk>>);
+
+impl Desk {
+    fn take() -> Loan {
+        let new = || {
+            Box::new(Self { bundle: RayBundle::empty(), slabs: BundleSlabs::empty(), queue: Queue::new(), stack: Stack::new() })
+        };
+        Loan(Some(DESK.take().unwrap_or_else(new)))
+    }
+}
+
+impl Deref for Loan {
+    type Target = Desk;
+
+    fn deref(&self) -> &Desk {
+        self.0.as_ref().expect("a loan holds its desk until it ends")
+    }
+}
+
+impl DerefMut for Loan {
+    fn deref_mut(&mut self) -> &mut Desk {
+        self.0.as_mut().expect("a loan holds its desk until it ends")
+    }
+}
+
+impl Drop for Loan {
+    fn drop(&mut self) {
+        DESK.set(self.0.take());
+    }
+}
+
+struct ClosestTask<'t, V> {
+    tree: &'t BspTree<'t>,
+    rays: &'t RayBatch<'t>,
+    targets: Targets<'t>,
+    hits: &'t mut [Hit],
+    visits: &'t mut V,
+}
+
+impl<V: Visits> Task for ClosestTask<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Self { tree, rays, targets, hits, visits } = self;
+        let mut desk = Desk::take();
+        let Desk { bundle, slabs, queue, stack } = &mut *desk;
+        for (from, hits) in (0..).step_by(BUNDLE).zip(hits.chunks_mut(BUNDLE)) {
+            let fit = bundle.gather::<S>(rays, from, hits.len(), &tree.space);
+            slabs.gather::<S>(bundle, hits.len().div_ceil(LANES), tree.space.reach);
+            let mut left = fit;
+            while let Some((p, lane)) = first(&left) {
+                let company = slabs.company(p, lane, &left);
+                for p in 0..PACKETS {
+                    left[p] &= !company[p];
+                }
+                if count(&company) >= COMPANY {
+                    let mut quest = ClosestOf { tree, bundle, rays, targets: &targets };
+                    if tree.send_together::<S, _>(slabs, slabs.near(p, lane), &company, queue, stack, &mut quest) {
+                        continue;
+                    }
+                }
+                for p in 0..PACKETS {
+                    let mut few = company[p];
+                    while few != 0 {
+                        let lane = few.trailing_zeros() as usize;
+                        few &= few - 1;
+                        tree.closest_alone::<S>(rays, bundle, slabs, p, lane, Child::ROOT, stack, &targets, visits);
+                    }
+                }
+            }
+            bundle.hits::<S>(rays, targets.positions(), hits);
+            if count(&fit) as usize != hits.len() {
+                tree.far_hits(rays, from, &fit, &targets, hits, visits);
+            }
+        }
+    }
+}
+
+struct AnyTask<'t, V> {
+    tree: &'t BspTree<'t>,
+    rays: &'t RayBatch<'t>,
+    targets: Targets<'t>,
+    occluded: &'t mut [bool],
+    visits: &'t mut V,
+}
+
+impl<V: Visits> Task for AnyTask<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Self { tree, rays, targets, occluded, visits } = self;
+        let mut desk = Desk::take();
+        let Desk { bundle, slabs, queue, stack } = &mut *desk;
+        for (from, occluded) in (0..).step_by(BUNDLE).zip(occluded.chunks_mut(BUNDLE)) {
+            let fit = bundle.gather::<S>(rays, from, occluded.len(), &tree.space);
+            slabs.gather::<S>(bundle, occluded.len().div_ceil(LANES), tree.space.reach);
+            let (mut left, mut blocked) = (fit, [0; PACKETS]);
+            while let Some((p, lane)) = first(&left) {
+                let company = slabs.company(p, lane, &left);
+                for p in 0..PACKETS {
+                    left[p] &= !company[p];
+                }
+                if count(&company) >= COMPANY {
+                    let mut quest = AnyOf { tree, bundle, rays, targets: &targets, blocked: &mut blocked };
+                    if tree.send_together::<S, _>(slabs, slabs.near(p, lane), &company, queue, stack, &mut quest) {
+                        continue;
+                    }
+                }
+                for p in 0..PACKETS {
+                    let mut few = company[p];
+                    while few != 0 {
+                        let lane = few.trailing_zeros() as usize;
+                        few &= few - 1;
+                        let hit = tree.any_alone::<S>(rays, bundle, slabs, p, lane, Child::ROOT, stack, &targets, visits);
+                        blocked[p] |= u32::from(hit) << lane;
+                    }
+                }
+            }
+            for (p, occluded) in occluded.chunks_mut(LANES).enumerate() {
+                for (lane, occluded) in occluded.iter_mut().enumerate() {
+                    *occluded = blocked[p] >> lane & 1 != 0;
+                }
+            }
+            if count(&fit) as usize != occluded.len() {
+                tree.far_answers(rays, from, &fit, &targets, occluded, visits);
+            }
+        }
+    }
+}
+
+impl BspTree<'_> {
+    /// The hits of valid rays that the f32 kernels cannot take: those not in `fit`.
+    #[cold]
+    #[inline(never)]
+    fn far_hits(
+        &self,
+        rays: &RayBatch<'_>,
+        from: usize,
+        fit: &Rays,
+        targets: &Targets<'_>,
+        hits: &mut [Hit],
+        visits: &mut impl Visits,
+    ) {
+        for (lane, hit) in hits.iter_mut().enumerate().filter(|(lane, _)| fit[lane / LANES] >> (lane % LANES) & 1 == 0) {
+            let ray = rays.ray(from + lane);
+            if ray.is_valid() {
+                let mut quest = NearestOf { ray, targets, best: Nearest::before(&ray, rays.left_by(from + lane)) };
+                self.send_far(&ray, &mut quest, visits);
+                *hit = quest.best.hit(&ray, targets.positions());
+            }
+        }
+    }
+
+    /// Whether these rays hit anything.
+    #[cold]
+    #[inline(never)]
+    fn far_answers(
+        &self,
+        rays: &RayBatch<'_>,
+        from: usize,
+        fit: &Rays,
+        targets: &Targets<'_>,
+        occluded: &mut [bool],
+        visits: &mut impl Visits,
+    ) {
+        for (lane, occluded) in occluded.iter_mut().enumerate().filter(|(lane, _)| fit[lane / LANES] >> (lane % LANES) & 1 == 0) {
+            let ray = rays.ray(from + lane);
+            if ray.is_valid() {
+                let mut quest = Blocked { ray, targets, leaves: rays.left_by(from + lane), found: false };
+                self.send_far(&ray, &mut quest, visits);
+                *occluded = quest.found;
+            }
+        }
+    }
+}

@@ -1,0 +1,348 @@
+//! A bundle's rays through the tree together, as long as they go the same way.
+//!
+//! A node's eight cells are first held against the interval that all rays span, then each cell that this leaves against the rays one by
+//! one; the rays that cross it go on with it as a set. Entries and exits are computed as `slabs.rs` says, with the same constants, so
+//! what is said there of lost hits holds ray by ray. For the interval, rounding is monotone: its entry, rounded twice, is at most what any
+//! ray's would be if rounded twice, and that is at most the true one; so with its exit.
+// Packets, axes and lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
+use super::slabs::BundleSlabs;
+use super::walk::Stack;
+use super::wide::{BspTree, Child, Target, WideNode};
+use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, TriGroup, count, greatest, least};
+use gz_core::simd::{Lanes, Simd};
+use gz_core::{RayBatch, Targets};
+
+/// What is asked of a bundle's rays.
+pub(super) trait BundleQuest<S: Simd> {
+    /// Whether nearer cells are to be visited first.
+    const ORDERED: bool;
+
+    /// Tests a group for the rays of `active`; returns those that need no more.
+    fn test(&mut self, group: &TriGroup, active: &Rays) -> Rays;
+
+    /// The rays; where each ends is lowered as hits are found.
+    fn bundle(&self) -> &RayBundle;
+
+    /// Sends one ray by itself through what hangs under `child`; returns whether it needs no more.
+    fn alone(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool;
+}
+
+/// A cell still to be visited, by which rays, and where each enters it.
+#[repr(C, align(64))]
+#[derive(Clone, Copy)]
+pub(super) struct Waiting {
+    entries: Each,
+    rays: Rays,
+    child: Child,
+}
+
+const NOBODY: Waiting = Waiting { entries: [[0.0; LANES]; PACKETS], rays: [0; PACKETS], child: Child::NONE };
+
+/// Cells that wait, and room for more. Made once.
+pub(super) struct Queue {
+    cells: Vec<Waiting>,
+    len: usize,
+}
+
+impl Queue {
+    pub(super) fn new() -> Self {
+        Self { cells: vec![NOBODY; 64], len: 0 }
+    }
+
+    /// The next free place, with room for eight.
+    #[inline(always)]
+    fn make_room(&mut self) {
+        if self.len + 8 > self.cells.len() {
+            self.grow();
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn grow(&mut self) {
+        self.cells.resize(2 * self.cells.len(), NOBODY);
+    }
+}
+
+/// Fewer rays than this go on alone.
+const FEW: u32 = 4;
+/// Rays go together when at the root they cross at least this share, in percent, of the cells that their interval crosses.
+const TOGETHER: u32 = 35;
+
+/// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
+struct Beam {
+    near: [usize; 3],
+    span: [[f32; 4]; 3],
+    tmin: f32,
+}
+
+impl Beam {
+    #[inline(always)]
+    fn of<S: Simd>(bundle: &RayBundle, slabs: &BundleSlabs, near: [usize; 3], company: &Rays) -> Self {
+        let mut beam = Self { near, span: [[0.0; 4]; 3], tmin: least::<S>(&bundle.tmin, company) };
+        for axis in 0..3 {
+            let (inverse, enter, leave) = (&slabs.inverse[axis], &slabs.enter[axis], &slabs.leave[axis]);
+            beam.span[axis] = [
+                least::<S>(inverse, company),
+                greatest::<S>(inverse, company),
+                greatest::<S>(enter, company),
+                least::<S>(leave, company),
+            ];
+        }
+        beam
+    }
+
+    /// Entries of the cells for the interval of all rays, and a bit for each cell that it crosses before `limit`.
+    #[inline(always)]
+    fn cross<L: Lanes<8>>(&self, node: &WideNode, limit: f32) -> (L, u32) {
+        let (mut near, mut far) = (L::splat(self.tmin), L::splat(limit));
+        for axis in 0..3 {
+            let [least, greatest, enter, leave] = self.span[axis];
+            let (least, greatest) = (L::splat(least), L::splat(greatest));
+            let first = L::load(&node.planes[self.near[axis] & 7]);
+            let last = L::load(&node.planes[(self.near[axis] ^ 1) & 7]);
+            near = near.max(first.times(least).min(first.times(greatest)).minus(L::splat(enter)));
+            far = far.min(last.times(least).max(last.times(greatest)).minus(L::splat(leave)));
+        }
+        (near, near.at_most(far))
+    }
+}
+
+/// Entries of a packet's rays into one cell, and a bit for each ray that crosses it before its limit.
+#[inline(always)]
+fn cross_one<L: Lanes<LANES>>(
+    bundle: &RayBundle,
+    slabs: &BundleSlabs,
+    beam: &Beam,
+    node: &WideNode,
+    slot: usize,
+    p: usize,
+) -> (L, u32) {
+    let (mut enter, mut leave) = (L::load(&bundle.tmin[p]), L::load(&bundle.limit[p]));
+    for axis in 0..3 {
+        let inverse = L::load(&slabs.inverse[axis][p]);
+        let first = L::splat(node.planes[beam.near[axis] & 7][slot]);
+        let last = L::splat(node.planes[(beam.near[axis] ^ 1) & 7][slot]);
+        enter = enter.max(first.mul_sub(inverse, L::load(&slabs.enter[axis][p])));
+        leave = leave.min(last.mul_sub(inverse, L::load(&slabs.leave[axis][p])));
+    }
+    (enter, enter.at_most(leave))
+}
+
+impl BspTree<'_> {
+    /// Sends the rays of `company`, which go the same way along each axis as `near` says; gives up, before anything is tested, when they
+    /// part at the root.
+    #[inline(always)]
+    pub(super) fn send_together<S: Simd, Q: BundleQuest<S>>(
+        &self,
+        slabs: &BundleSlabs,
+        near: [usize; 3],
+        company: &Rays,
+        queue: &mut Queue,
+        stack: &mut Stack,
+        quest: &mut Q,
+    ) -> bool {
+        let beam = Beam::of::<S>(quest.bundle(), slabs, near, company);
+        let mut greatest_limit = greatest::<S>(&quest.bundle().limit, company);
+        // Rays whose quest is not over, and those of them that cross the node.
+        let (mut live, mut active) = (*company, *company);
+        queue.len = 0;
+        let mut at = 0;
+        loop {
+            let node = &self.nodes[at];
+            let (entries, crossed) = beam.cross::<S::Eight>(node, greatest_limit);
+            let (order, cells) = if Q::ORDERED { far_first(&entries.array(), crossed) } else { as_they_come(crossed) };
+            queue.make_room();
+            for &slot in &order[..cells] {
+                let slot = usize::from(slot & 7);
+                let waiting = &mut queue.cells[queue.len];
+                let mut any = 0;
+                for p in 0..PACKETS {
+                    if active[p] == 0 {
+                        waiting.rays[p] = 0;
+                        continue;
+                    }
+                    let (entries, crossed) = cross_one::<S::Sixteen>(quest.bundle(), slabs, &beam, node, slot, p);
+                    waiting.rays[p] = crossed & active[p];
+                    if Q::ORDERED {
+                        entries.store(&mut waiting.entries[p]);
+                    }
+                    any |= crossed & active[p];
+                }
+                if any != 0 {
+                    let child = node.children[slot];
+                    self.prefetch::<S>(child);
+                    waiting.child = child;
+                    queue.len += 1;
+                }
+            }
+            if at == 0 {
+                let crossings: u32 = queue.cells[..queue.len].iter().map(|waiting| count(&waiting.rays)).sum();
+                if crossings * 100 < count(company) * cells as u32 * TOGETHER {
+                    return false;
+                }
+            }
+            at = loop {
+                if queue.len == 0 {
+                    return true;
+                }
+                queue.len -= 1;
+                let waiting = &queue.cells[queue.len];
+                let mut any = 0;
+                for p in 0..PACKETS {
+                    active[p] = waiting.rays[p] & live[p];
+                    if Q::ORDERED && active[p] != 0 {
+                        let limits = <S::Sixteen>::load(&quest.bundle().limit[p]);
+                        active[p] &= <S::Sixteen>::load(&waiting.entries[p]).at_most(limits);
+                    }
+                    any |= active[p];
+                }
+                if any == 0 {
+                    continue;
+                }
+                let child = waiting.child;
+                match child.target() {
+                    Target::Node(index) => {
+                        if count(&active) >= FEW {
+                            break index;
+                        }
+                        for p in 0..PACKETS {
+                            let mut few = active[p];
+                            while few != 0 {
+                                let lane = few.trailing_zeros() as usize;
+                                few &= few - 1;
+                                if quest.alone(slabs, p, lane, child, stack) {
+                                    live[p] &= !(1 << lane);
+                                }
+                            }
+                        }
+                    }
+                    Target::Groups { first, count } => {
+                        for group in &self.groups[first..first + count] {
+                            let over = quest.test(group, &active);
+                            if !Q::ORDERED {
+                                for p in 0..PACKETS {
+                                    live[p] &= !over[p];
+                                    active[p] &= !over[p];
+                                }
+                                if active == [0; PACKETS] {
+                                    break;
+                                }
+                            }
+                        }
+                    }
+                }
+                if Q::ORDERED {
+                    greatest_limit = greatest::<S>(&quest.bundle().limit, company);
+                } else if live == [0; PACKETS] {
+                    return true;
+                }
+            };
+        }
+    }
+
+    /// Asks for what a walk will read next.
+    #[inline(always)]
+    pub(super) fn prefetch<S: Simd>(&self, child: Child) {
+        match child.target() {
+            Target::Node(index) => S::prefetch(&self.nodes[index]),
+            Target::Groups { first, .. } => S::prefetch(&self.groups[first]),
+        }
+    }
+}
+
+/// The front-most hits.
+pub(super) struct ClosestOf<'q> {
+    pub(super) tree: &'q BspTree<'q>,
+    pub(super) bundle: &'q mut RayBundle,
+    pub(super) rays: &'q RayBatch<'q>,
+    pub(super) targets: &'q Targets<'q>,
+}
+
+impl<S: Simd> BundleQuest<S> for ClosestOf<'_> {
+    const ORDERED: bool = true;
+
+    #[inline(always)]
+    fn test(&mut self, group: &TriGroup, active: &Rays) -> Rays {
+        self.bundle.closest::<S>(self.rays, group, active, self.targets);
+        [0; PACKETS]
+    }
+
+    #[inline(always)]
+    fn bundle(&self) -> &RayBundle {
+        self.bundle
+    }
+
+    #[inline(always)]
+    fn alone(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool {
+        self.tree.closest_alone::<S>(self.rays, self.bundle, slabs, p, lane, child, stack, self.targets, &mut ());
+        false
+    }
+}
+
+/// Whether there are hits.
+pub(super) struct AnyOf<'q> {
+    pub(super) tree: &'q BspTree<'q>,
+    pub(super) bundle: &'q RayBundle,
+    pub(super) rays: &'q RayBatch<'q>,
+    pub(super) targets: &'q Targets<'q>,
+    /// Rays that hit something.
+    pub(super) blocked: &'q mut Rays,
+}
+
+impl<S: Simd> BundleQuest<S> for AnyOf<'_> {
+    const ORDERED: bool = false;
+
+    #[inline(always)]
+    fn test(&mut self, group: &TriGroup, active: &Rays) -> Rays {
+        let hit = self.bundle.any::<S>(self.rays, group, active, self.targets);
+        for p in 0..PACKETS {
+            self.blocked[p] |= hit[p];
+        }
+        hit
+    }
+
+    #[inline(always)]
+    fn bundle(&self) -> &RayBundle {
+        self.bundle
+    }
+
+    #[inline(always)]
+    fn alone(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool {
+        let hit = self.tree.any_alone::<S>(self.rays, self.bundle, slabs, p, lane, child, stack, self.targets, &mut ());
+        self.blocked[p] |= u32::from(hit) << lane;
+        hit
+    }
+}
+
+/// Slots whose bit is set, by falling entry.
+#[inline(always)]
+fn far_first(entries: &[f32; 8], mut crossed: u32) -> ([u8; 8], usize) {
+    let (mut order, mut cells) = ([0u8; 8], 0);
+    while crossed != 0 {
+        let slot = crossed.trailing_zeros() as u8;
+        crossed &= crossed - 1;
+        let mut k = cells;
+        while k > 0 && entries[usize::from(order[k - 1] & 7)] < entries[usize::from(slot & 7)] {
+            order[k] = order[k - 1];
+            k -= 1;
+        }
+        order[k] = slot;
+        cells += 1;
+    }
+    (order, cells)
+}
+
+/// Slots whose bit is set.
+#[inline(always)]
+fn as_they_come(mut crossed: u32) -> ([u8; 8], usize) {
+    let (mut order, mut cells) = ([0u8; 8], 0);
+    while crossed != 0 {
+        order[cells] = crossed.trailing_zeros() as u8;
+        crossed &= crossed - 1;
+        cells += 1;
+    }
+    (order, cells)
+}

@@ -1,0 +1,122 @@
+//! T, u and v of hits: pure functions of ray and triangle, so every query gives these bits.
+//!
+//! T is the exact t rounded once: in f64 when both ends of its interval round alike, else by the exact stage. u = V/D and v = W/D are
+//! within 1 ulp or 2^-40 of the true ones.
+
+use super::exact::ExactHit;
+use super::solution::{Bounded, Solution};
+use crate::simd::{Doubles, EightDoubles, Lanes, Simd, nine};
+use crate::{GzCoord, GzRay, Hit, TriId};
+
+/// What f64 says of hits: each number, and where it is not settled and the exact stage has it.
+struct InDoubles<F> {
+    /// Both ends of the interval of t.
+    t: [F; 2],
+    v: F,
+    w: F,
+    /// At least 0 where v and w are good enough.
+    weights: F,
+    /// Above 0 where there is anything at all.
+    certainty: F,
+}
+
+impl<F: Doubles> InDoubles<F> {
+    #[inline(always)]
+    fn of(solution: &Solution<F>) -> Self {
+        let inverse = solution.inverse();
+        let (Bounded { value: t, error }, ([v, w], weight_error)) = (solution.t(inverse), solution.weights(inverse));
+        let (v, w) = (cut(v), cut(w));
+        // A weight is good to 1 ulp of f32 when it errs by less than a quarter of one, and to 2^-40 when by less than 2^-41.
+        let may_err = v.or_less(w).times(F::splat(f64::from(f32::EPSILON) / 4.0)).or_more(F::splat(HALF_SMALLEST));
+        Self { t: [t.minus(error), t.plus(error)], v, w, weights: may_err.minus(weight_error), certainty: solution.certainty() }
+    }
+}
+
+/// A weight cut to [0, 1]; 0 has no sign.
+#[inline(always)]
+fn cut<F: Doubles>(weight: F) -> F {
+    weight.or_more(F::splat(0.0)).or_less(F::splat(1.0))
+}
+
+/// T, u and v of a hit, for a ray and a triangle that are known to meet.
+pub(crate) fn t_u_v(ray: &GzRay, corners: &[GzCoord; 3]) -> (f32, f32, f32) {
+    let found = InDoubles::of(&Solution::of_one(ray, corners));
+    let certain = found.certainty > 0.0;
+    let [lo, hi] = found.t.map(|t| t as f32);
+    // Equal bits, so that -0 and 0 are told apart.
+    let t = (certain && lo.to_bits() == hi.to_bits()).then_some(lo);
+    let weights = (certain && found.weights >= 0.0).then_some((found.v as f32, found.w as f32));
+    if let (Some(t), Some((u, v))) = (t, weights) {
+        return (t, u, v);
+    }
+    let Some(exact) = ExactHit::of(ray, corners) else { return (t.unwrap_or(0.0), 0.0, 0.0) };
+    let (u, v) = weights.unwrap_or_else(|| (exact.weight(1), exact.weight(2)));
+    (t.unwrap_or_else(|| exact.t()), u, v)
+}
+
+/// Eight rays and the triangles that they hit.
+pub(super) struct EightPairs<'p, S: Simd> {
+    pub(super) origin: [S::Doubles; 3],
+    pub(super) direction: [S::Doubles; 3],
+    pub(super) corners: [&'p [GzCoord; 3]; 8],
+}
+
+impl<S: Simd> EightPairs<'_, S> {
+    /// [`t_u_v`] of each lane whose bit is set, as the hit of triangle `ids[lane]`; of others a miss. `ray` gives a lane's ray.
+    #[inline(always)]
+    pub(super) fn hits(&self, hit: u32, ids: &[TriId; 8], ray: impl Fn(usize) -> GzRay, hits: &mut [Hit]) {
+        let c = &self.corners;
+        let numbers = [nine(c[0]), nine(c[1]), nine(c[2]), nine(c[3]), nine(c[4]), nine(c[5]), nine(c[6]), nine(c[7])];
+        let [ax, ay, az, bx, by, bz, cx, cy, cz] = S::corners(&numbers);
+        let corners = [widen3::<S>([ax, ay, az]), widen3::<S>([bx, by, bz]), widen3::<S>([cx, cy, cz])];
+        let found = InDoubles::of(&Solution::of(self.origin, self.direction, &corners));
+        let (mut lo, mut hi, mut v, mut w) = ([0.0; 8], [0.0; 8], [0.0; 8], [0.0; 8]);
+        found.t[0].narrow(&mut lo);
+        found.t[1].narrow(&mut hi);
+        found.v.narrow(&mut v);
+        found.w.narrow(&mut w);
+        let zero = <S::Doubles>::splat(0.0);
+        let certain = !found.certainty.at_most(zero) & zero.at_most(found.weights);
+        let settled = certain & <S::Eight>::load(&lo).same_bits(<S::Eight>::load(&hi));
+        for (lane, to) in hits.iter_mut().enumerate() {
+            let found = Hit { t: lo[lane], tri: ids[lane], u: v[lane], v: w[lane] };
+            *to = if hit >> lane & 1 != 0 { found } else { Hit::MISS };
+        }
+        let mut open = hit & !settled;
+        while open != 0 {
+            let lane = open.trailing_zeros() as usize;
+            open &= open - 1;
+            hits[lane] = alone(&ray(lane), ids[lane], self.corners[lane]);
+        }
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn alone(ray: &GzRay, tri: TriId, corners: &[GzCoord; 3]) -> Hit {
+    let (t, u, v) = t_u_v(ray, corners);
+    Hit { t, tri, u, v }
+}
+
+#[inline(always)]
+fn widen3<S: Simd>(rows: [S::Eight; 3]) -> [S::Doubles; 3] {
+    [S::widen(rows[0]), S::widen(rows[1]), S::widen(rows[2])]
+}
+
+/// 2^-41.
+const HALF_SMALLEST: f64 = 1.0 / (1u64 << 41) as f64;
+/// 2^-36.
+const WEIGHT_ERROR: f64 = 1.0 / (1u64 << 36) as f64;
+
+/// Weights of the three corners where the line of `ray` meets the triangle, in f64.
+///
+/// Each is in [0, 1] and within 2^-36 of the true one; they sum to 1 up to rounding. Meaningful for a ray that hits the triangle; for
+/// one that does not, (1, 0, 0).
+pub fn hit_weights(ray: &GzRay, corners: &[GzCoord; 3]) -> [f64; 3] {
+    let solution = Solution::of_one(ray, corners);
+    let ([v, w], error) = solution.weights(solution.inverse());
+    if solution.certainty() > 0.0 && error <= WEIGHT_ERROR {
+        return [1.0 - v - w, v, w].map(|x| x.clamp(0.0, 1.0));
+    }
+    ExactHit::of(ray, corners).map_or([1.0, 0.0, 0.0], |exact| exact.weights_near())
+}

@@ -1,0 +1,361 @@
+//! Up to sixty-four rays that are asked together.
+// Packets, axes and lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
+use super::answer::EightPairs;
+use super::filter::{FilterRay, GREATEST_DIRECTION, GREATEST_REACH, Margin};
+use super::group::cross;
+use super::nearest::Nearest;
+use super::space::FilterSpace;
+use crate::simd::{Doubles, EightDoubles, Lanes, Simd, arrays3, coordinates, coordinates_f64};
+use crate::{GzCoord, Hit, NO_TRI, PerRay, RayBatch, TriId};
+
+/// Rays that one operation works on.
+pub const LANES: usize = 16;
+/// Packets of a bundle.
+pub const PACKETS: usize = 4;
+/// Rays of a bundle.
+pub const BUNDLE: usize = LANES * PACKETS;
+
+/// One number for each ray of a packet.
+pub type Row = [f32; LANES];
+/// One number for each ray.
+pub type Each = [Row; PACKETS];
+/// A set of rays: a bit for each ray of each packet.
+pub type Rays = [u32; PACKETS];
+
+/// The rays in a set.
+#[inline(always)]
+pub fn count(rays: &Rays) -> u32 {
+    rays.iter().map(|packet| packet.count_ones()).sum()
+}
+
+/// Up to sixty-four rays of a batch and the best hit of each so far. Made once and filled again and again.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct RayBundle {
+    /// Origins in stretched coordinates, rounded.
+    pub origin: [Each; 3],
+    /// Directions in stretched coordinates.
+    pub direction: [Each; 3],
+    /// Lower ends of t.
+    pub tmin: Each,
+    /// At least the t of the best hit, tmax before there is one: a ray looks no further.
+    pub limit: Each,
+    /// At most the t of the best hit.
+    pub(super) near: Each,
+    /// The origin as seen from the centre, s, and d x s.
+    pub(super) shift: [Each; 3],
+    pub(super) moment: [Each; 3],
+    /// In trace space.
+    exact_origin: [[[f64; LANES]; PACKETS]; 3],
+    /// Triangles of the best hits; before there is one, the triangle that the ray leaves.
+    pub(super) tris: [[TriId; LANES]; PACKETS],
+    /// Rays that have a hit.
+    pub(super) found: Rays,
+    pub(super) centre: [f32; 3],
+    pub(super) margin: Margin,
+    /// At least the distance along an axis from a ray's origin to the rounded one.
+    lost: f32,
+    /// All origins are the centre.
+    pub(super) common_origin: bool,
+    scale: [f32; 3],
+    /// The first ray's number in its batch.
+    from: usize,
+}
+
+const NOTHING: Each = [[0.0; LANES]; PACKETS];
+
+impl RayBundle {
+    /// Without rays.
+    pub fn empty() -> Self {
+        Self {
+            origin: [NOTHING; 3],
+            direction: [NOTHING; 3],
+            tmin: NOTHING,
+            limit: NOTHING,
+            near: NOTHING,
+            shift: [NOTHING; 3],
+            moment: [NOTHING; 3],
+            exact_origin: [[[0.0; LANES]; PACKETS]; 3],
+            tris: [[NO_TRI; LANES]; PACKETS],
+            found: [0; PACKETS],
+            centre: [0.0; 3],
+            margin: Margin::default(),
+            lost: 0.0,
+            common_origin: false,
+            scale: [1.0; 3],
+            from: 0,
+        }
+    }
+
+    /// Takes rays `from..from + len` of a batch, 1 to [`BUNDLE`], and tells which of them the f32 kernels can take, for triangles in
+    /// `space`.
+    #[inline(always)]
+    pub fn gather<S: Simd>(&mut self, rays: &RayBatch<'_>, from: usize, len: usize, space: &FilterSpace) -> Rays {
+        self.from = from;
+        self.scale = space.scale.to_array();
+        self.found = [0; PACKETS];
+        self.common_origin = matches!(rays.origin, PerRay::One(_));
+        let mut fit = [0; PACKETS];
+        let packets = len.div_ceil(LANES);
+        let mut tiny = 0;
+        for (p, fit) in fit.iter_mut().enumerate().take(packets) {
+            let (from, len) = (from + p * LANES, (len - p * LANES).min(LANES));
+            self.take_directions::<S>(p, rays, from, len);
+            self.take_origins::<S>(p, rays, from, len);
+            take(&mut self.tmin[p], &rays.tmin, from, len);
+            take(&mut self.limit[p], &rays.tmax, from, len);
+            self.near[p] = self.limit[p];
+            if let Some(leaves) = rays.leaves {
+                self.tris[p][..len].copy_from_slice(&leaves[from..from + len]);
+            } else {
+                self.tris[p] = [NO_TRI; LANES];
+            }
+            *fit = self.fit::<S::Sixteen>(p, space.reach) & ((1u32 << len) - 1);
+            // The least origins cannot be told from 0 in f32.
+            tiny |= self.tiny::<S::Sixteen>(p) & *fit;
+        }
+        if tiny != 0 {
+            drop_invalid(&mut fit, rays, from);
+        }
+        if fit != [0; PACKETS] {
+            self.settle_down::<S>(&fit, packets);
+        }
+        fit
+    }
+
+    #[inline(always)]
+    fn take_directions<S: Simd>(&mut self, p: usize, rays: &RayBatch<'_>, from: usize, len: usize) {
+        let scale = GzCoord::from_array(self.scale);
+        match rays.direction {
+            PerRay::One(d) => {
+                for (axis, d) in (d * scale).to_array().into_iter().enumerate() {
+                    self.direction[axis][p] = [d; LANES];
+                }
+            }
+            PerRay::Each(all) => {
+                let points = padded(coordinates(&all[from..from + len]));
+                let [x, y, z] = <S::Sixteen>::unzip3(&points);
+                x.times(<S::Sixteen>::splat(scale.x)).store(&mut self.direction[0][p]);
+                y.times(<S::Sixteen>::splat(scale.y)).store(&mut self.direction[1][p]);
+                z.times(<S::Sixteen>::splat(scale.z)).store(&mut self.direction[2][p]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn take_origins<S: Simd>(&mut self, p: usize, rays: &RayBatch<'_>, from: usize, len: usize) {
+        match rays.origin {
+            PerRay::One(o) => {
+                for (axis, o) in o.to_array().into_iter().enumerate() {
+                    self.exact_origin[axis][p] = [o; LANES];
+                    self.origin[axis][p] = [(o * f64::from(self.scale[axis])) as f32; LANES];
+                }
+            }
+            PerRay::Each(all) => {
+                for half in 0..2 {
+                    let first = (half * 8).min(len - 1);
+                    let points = padded(coordinates_f64(&all[from + first..from + len.min(first + 8)]));
+                    let points = <S::Doubles>::unzip3(&points);
+                    for axis in 0..3 {
+                        *eight_mut(&mut self.exact_origin[axis][p], half) = points[axis].array();
+                        let stretched = points[axis].times(<S::Doubles>::splat(f64::from(self.scale[axis])));
+                        stretched.narrow(eight_mut(&mut self.origin[axis][p], half));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Rays that are valid, but for origins near 0, and within the range of the bounds.
+    #[inline(always)]
+    fn fit<L: Lanes<LANES>>(&self, p: usize, reach: GzCoord) -> u32 {
+        let limit = L::splat(GREATEST_REACH - reach.max_element());
+        let fast = L::splat(GREATEST_DIRECTION);
+        let mut fit = L::load(&self.tmin[p]).below(L::load(&self.limit[p]));
+        let mut largest = L::splat(0.0);
+        for axis in 0..3 {
+            let direction = L::load(&self.direction[axis][p]).abs();
+            fit &= L::load(&self.origin[axis][p]).abs().at_most(limit) & direction.at_most(fast);
+            largest = largest.max(direction);
+        }
+        fit & L::splat(1.0 / GREATEST_DIRECTION).at_most(largest)
+    }
+
+    #[inline(always)]
+    fn tiny<L: Lanes<LANES>>(&self, p: usize) -> u32 {
+        let least = L::splat(f32::MIN_POSITIVE);
+        let [x, y, z] = [L::load(&self.origin[0][p]), L::load(&self.origin[1][p]), L::load(&self.origin[2][p])];
+        x.abs().below(least) | y.abs().below(least) | z.abs().below(least)
+    }
+
+    /// Chooses the centre and forms what depends on it; only the rays of `fit` matter.
+    #[inline(always)]
+    fn settle_down<S: Simd>(&mut self, fit: &Rays, packets: usize) {
+        let zero = <S::Sixteen>::splat(0.0);
+        let (mut size, mut spread) = (zero, zero);
+        for p in 0..packets {
+            let d = self.packet_of::<S::Sixteen>(&self.direction, p);
+            size = size.max(d[0].abs().plus(d[1].abs()).plus(d[2].abs()).select(fit[p], zero));
+        }
+        let size = size.greatest() * (1.0 + f32::EPSILON);
+        let mut reach = 0.0f32;
+        for axis in 0..3 {
+            let [least, greatest] = match self.common_origin {
+                true => [self.origin[axis][0][0]; 2],
+                false => [least::<S>(&self.origin[axis], fit), greatest::<S>(&self.origin[axis], fit)],
+            };
+            self.centre[axis] = if self.common_origin { least } else { least * 0.5 + greatest * 0.5 };
+            reach = reach.max(least.abs()).max(greatest.abs());
+        }
+        // Half a unit in the last place, and what the least numbers lose.
+        self.lost = reach * f32::EPSILON + f32::MIN_POSITIVE;
+        if self.common_origin {
+            self.margin = Margin::new(size, 0.0, self.lost);
+            return;
+        }
+        for p in 0..packets {
+            for axis in 0..3 {
+                let (centre, scale) = (f64::from(self.centre[axis]), f64::from(self.scale[axis]));
+                for half in 0..2 {
+                    let o = <S::Doubles>::load(eight(&self.exact_origin[axis][p], half));
+                    let shift = o.times(<S::Doubles>::splat(scale)).minus(<S::Doubles>::splat(centre));
+                    shift.narrow(eight_mut(&mut self.shift[axis][p], half));
+                }
+                spread = spread.max(<S::Sixteen>::load(&self.shift[axis][p]).abs().select(fit[p], zero));
+            }
+            let (d, s) = (self.packet_of::<S::Sixteen>(&self.direction, p), self.packet_of::<S::Sixteen>(&self.shift, p));
+            let moment = arrays3(cross(d, s));
+            for axis in 0..3 {
+                self.moment[axis][p] = moment[axis];
+            }
+        }
+        self.margin = Margin::new(size, spread.greatest(), 0.0);
+    }
+
+    #[inline(always)]
+    pub(super) fn packet_of<L: Lanes<LANES>>(&self, rows: &[Each; 3], p: usize) -> [L; 3] {
+        [L::load(&rows[0][p]), L::load(&rows[1][p]), L::load(&rows[2][p])]
+    }
+
+    /// Number of a ray in its batch.
+    #[inline(always)]
+    pub fn place(&self, p: usize, lane: usize) -> usize {
+        self.from + p * LANES + lane
+    }
+
+    /// One ray by itself.
+    #[inline(always)]
+    pub fn filter_ray(&self, p: usize, lane: usize) -> FilterRay {
+        let [o, d] = [&self.origin, &self.direction];
+        FilterRay::of([o[0][p][lane], o[1][p][lane], o[2][p][lane]], [d[0][p][lane], d[1][p][lane], d[2][p][lane]], self.lost)
+    }
+
+    /// The best hit so far of one ray.
+    #[inline(always)]
+    pub fn nearest(&self, p: usize, lane: usize) -> Nearest {
+        let found = self.found[p] >> lane & 1 != 0;
+        Nearest { lo: self.near[p][lane], hi: self.limit[p][lane], tri: self.tris[p][lane], found }
+    }
+
+    /// Takes over a better one.
+    #[inline(always)]
+    pub fn set_nearest(&mut self, p: usize, lane: usize, best: Nearest) {
+        self.near[p][lane] = best.lo;
+        self.limit[p][lane] = best.hi;
+        self.tris[p][lane] = best.tri;
+        self.found[p] |= u32::from(best.found) << lane;
+    }
+
+    /// The answers of the first `hits.len()` rays.
+    #[inline(always)]
+    pub fn hits<S: Simd>(&self, rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], hits: &mut [Hit]) {
+        for (k, hits) in hits.chunks_mut(8).enumerate() {
+            let (p, half) = (k / 2, k % 2);
+            let found = self.found[p] >> (8 * half) & 0xff;
+            if found == 0 {
+                hits.fill(Hit::MISS);
+                continue;
+            }
+            let tris = eight(&self.tris[p], half);
+            let any = tris[found.trailing_zeros() as usize];
+            let mut origin = [<S::Doubles>::splat(0.0); 3];
+            let mut direction = origin;
+            for axis in 0..3 {
+                origin[axis] = <S::Doubles>::load(eight(&self.exact_origin[axis][p], half));
+                let d = <S::Doubles>::widen(eight(&self.direction[axis][p], half));
+                direction[axis] = d.times(<S::Doubles>::splat(1.0 / f64::from(self.scale[axis])));
+            }
+            let corners = std::array::from_fn(|lane| {
+                let tri = if found >> lane & 1 != 0 { tris[lane] } else { any };
+                &positions[tri as usize]
+            });
+            let pairs = EightPairs::<S> { origin, direction, corners };
+            pairs.hits(found, tris, |lane| rays.ray(self.place(p, 8 * half + lane)), hits);
+        }
+    }
+}
+
+/// Takes rays out of `fit` that are not valid after all.
+#[cold]
+#[inline(never)]
+fn drop_invalid(fit: &mut Rays, rays: &RayBatch<'_>, from: usize) {
+    for (p, fit) in fit.iter_mut().enumerate() {
+        for lane in (0..LANES).filter(|lane| *fit >> lane & 1 != 0).collect::<Vec<_>>() {
+            if !rays.ray(from + p * LANES + lane).is_valid() {
+                *fit &= !(1 << lane);
+            }
+        }
+    }
+}
+
+/// The least number of the rays in a set; infinite when it is empty.
+#[inline(always)]
+pub fn least<S: Simd>(each: &Each, rays: &Rays) -> f32 {
+    let mut least = <S::Sixteen>::splat(f32::INFINITY);
+    for p in 0..PACKETS {
+        least = <S::Sixteen>::load(&each[p]).select(rays[p], least).min(least);
+    }
+    least.least()
+}
+
+/// The greatest number of the rays in a set.
+#[inline(always)]
+pub fn greatest<S: Simd>(each: &Each, rays: &Rays) -> f32 {
+    let mut greatest = <S::Sixteen>::splat(f32::NEG_INFINITY);
+    for p in 0..PACKETS {
+        greatest = <S::Sixteen>::load(&each[p]).select(rays[p], greatest).max(greatest);
+    }
+    greatest.greatest()
+}
+
+#[inline(always)]
+fn take(row: &mut Row, property: &PerRay<'_, f32>, from: usize, len: usize) {
+    match property {
+        PerRay::One(x) => *row = [*x; LANES],
+        PerRay::Each(all) => row[..len].copy_from_slice(&all[from..from + len]),
+    }
+}
+
+/// The points, the last one repeated where there are too few.
+#[inline(always)]
+fn padded<T: Copy, const N: usize>(points: &[T]) -> [T; N] {
+    match points.first_chunk() {
+        Some(all) => *all,
+        None => std::array::from_fn(|k| points[k.min(points.len() - 1)]),
+    }
+}
+
+/// The lower or upper eight.
+#[inline(always)]
+fn eight<T>(row: &[T; LANES], half: usize) -> &[T; 8] {
+    let (eights, _) = row.as_chunks();
+    &eights[half]
+}
+
+#[inline(always)]
+fn eight_mut<T>(row: &mut [T; LANES], half: usize) -> &mut [T; 8] {
+    let (eights, _) = row.as_chunks_mut();
+    &mut eights[half]
+}

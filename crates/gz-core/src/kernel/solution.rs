@@ -1,0 +1,112 @@
+//! The f64 arithmetic of a ray and a triangle with its error bounds, for one pair or eight.
+//!
+//! u = 2^-53 is the unit roundoff of f64. Inputs are f32 vertices and an origin within [2^-150, 2^128] or 0, so no product of this
+//! file under- or overflows, and each operation errs by at most a factor 1 + u. No multiply-add is fused: one pair and eight give equal
+//! bits.
+
+use crate::simd::Doubles;
+
+const U: f64 = f64::EPSILON / 2.0;
+
+/// A triple product d.(b x c) of differences b and c, each rounded once: a term d_x b_y c_z passes 2 differences, the product b_y c_z,
+/// the subtraction, the product with d_x and at most 2 additions, 7 roundings, so it errs by at most ((1 + u)^7 - 1) times the
+/// permanent (the sum of the terms' magnitudes). The computed permanent is itself at least (1 - 7u) of the true one. 8u covers both.
+const VOLUME_BOUND: f64 = 8.0 * U;
+
+/// The same for N . A: one more rounded difference in each term.
+const DISTANCE_BOUND: f64 = 9.0 * U;
+
+/// A number and how far from it the true one may be.
+#[derive(Clone, Copy)]
+pub(super) struct Bounded<F> {
+    pub(super) value: F,
+    pub(super) error: F,
+}
+
+/// d.(b x c) with its error, for rounded differences b, c.
+#[inline(always)]
+fn volume<F: Doubles>(d: [F; 3], b: [F; 3], c: [F; 3], bound: f64) -> Bounded<F> {
+    let (px, qx) = (b[1].times(c[2]), b[2].times(c[1]));
+    let (py, qy) = (b[2].times(c[0]), b[0].times(c[2]));
+    let (pz, qz) = (b[0].times(c[1]), b[1].times(c[0]));
+    let value = d[0].times(px.minus(qx)).plus(d[1].times(py.minus(qy))).plus(d[2].times(pz.minus(qz)));
+    let permanent = share(d[0], px, qx).plus(share(d[1], py, qy)).plus(share(d[2], pz, qz));
+    Bounded { value, error: F::splat(bound).times(permanent) }
+}
+
+#[inline(always)]
+fn share<F: Doubles>(d: F, p: F, q: F) -> F {
+    d.abs().times(p.abs().plus(q.abs()))
+}
+
+/// All that f64 knows of a ray and a triangle, from edges e1 = b - a, e2 = c - a and A = a - o.
+///
+/// V = d.(e2 x A), W = d.(A x e1), D = d.(e1 x e2) and M = A.(e1 x e2) equal the volumes of the definition, but their permanents, and so
+/// their errors, are smaller by the triangle's size over its distance. U = D - V - W takes over the errors of all three.
+pub(super) struct Solution<F> {
+    pub(super) v: Bounded<F>,
+    pub(super) w: Bounded<F>,
+    pub(super) d: Bounded<F>,
+    m: Bounded<F>,
+}
+
+impl<F: Doubles> Solution<F> {
+    #[inline(always)]
+    pub(super) fn of(origin: [F; 3], direction: [F; 3], corners: &[[F; 3]; 3]) -> Self {
+        let [a, b, c] = *corners;
+        let (e1, e2, from_origin) = (difference(b, a), difference(c, a), difference(a, origin));
+        Self {
+            v: volume(direction, e2, from_origin, VOLUME_BOUND),
+            w: volume(direction, from_origin, e1, VOLUME_BOUND),
+            d: volume(direction, e1, e2, VOLUME_BOUND),
+            m: volume(from_origin, e1, e2, DISTANCE_BOUND),
+        }
+    }
+
+    /// U = D - V - W.
+    #[inline(always)]
+    pub(super) fn u(&self) -> Bounded<F> {
+        let (v, w, d) = (self.v, self.w, self.d);
+        // Two subtractions, each off by at most u times the magnitudes that go in.
+        let rounding = F::splat(2.0 * U).times(d.value.abs().plus(v.value.abs()).plus(w.value.abs()));
+        let error = F::splat(1.01).times(d.error.plus(v.error).plus(w.error).plus(rounding));
+        Bounded { value: d.value.minus(v.value).minus(w.value), error }
+    }
+
+    /// At least 0 where D is proved to differ from 0, by enough for the quotients below.
+    ///
+    /// |M/D - m/d| <= (error of M + |m/d| error of D) / (|d| - error of D); a quarter of |d| caps the denominator's loss at 4/3.
+    #[inline(always)]
+    pub(super) fn certainty(&self) -> F {
+        self.d.value.abs().minus(F::splat(4.0).times(self.d.error))
+    }
+
+    /// 1 / D, where D is certain.
+    #[inline(always)]
+    pub(super) fn inverse(&self) -> F {
+        F::splat(1.0).over(self.d.value)
+    }
+
+    /// t = M / D and how far it may be off, where D is certain: 1.5 leaves room for the roundings of the bound and 3u |t| for those of the
+    /// reciprocal and the product.
+    #[inline(always)]
+    pub(super) fn t(&self, inverse: F) -> Bounded<F> {
+        let t = self.m.value.times(inverse);
+        let from_both = self.m.error.plus(t.abs().times(self.d.error)).times(inverse.abs());
+        Bounded { value: t, error: F::splat(1.5).times(from_both).plus(F::splat(3.0 * U).times(t.abs())) }
+    }
+
+    /// V / D and W / D, before they are cut to [0, 1], and how far each and their sum may be off, where D is certain.
+    #[inline(always)]
+    pub(super) fn weights(&self, inverse: F) -> ([F; 2], F) {
+        // As for t, with |V/D| at most 1, the same for W, and U with the errors of both; 6u for the quotients and the sum.
+        let errors = self.v.error.plus(self.w.error).plus(F::splat(2.0).times(self.d.error));
+        let error = F::splat(1.5).times(errors).times(inverse.abs()).plus(F::splat(6.0 * U));
+        ([self.v.value.times(inverse), self.w.value.times(inverse)], error)
+    }
+}
+
+#[inline(always)]
+fn difference<F: Doubles>(a: [F; 3], b: [F; 3]) -> [F; 3] {
+    [a[0].minus(b[0]), a[1].minus(b[1]), a[2].minus(b[2])]
+}

@@ -1,0 +1,41 @@
+//! Points as arrays of numbers.
+
+use crate::GzCoord;
+use glam::DVec3;
+
+const _: () = assert!(size_of::<GzCoord>() == 12 && align_of::<GzCoord>() == 4);
+const _: () = assert!(size_of::<DVec3>() == 24 && align_of::<DVec3>() == 8);
+
+/// The points' coordinates.
+#[inline(always)]
+pub fn coordinates(points: &[GzCoord]) -> &[[f32; 3]] {
+    // SAFETY: `GzCoord` is `repr(C)` with the fields x, y, z of f32 and nothing else.
+    unsafe { std::slice::from_raw_parts(points.as_ptr().cast(), points.len()) }
+}
+
+/// The points' coordinates.
+#[inline(always)]
+pub fn coordinates_f64(points: &[DVec3]) -> &[[f64; 3]] {
+    // SAFETY: `DVec3` is `repr(C)` with the fields x, y, z of f64 and nothing else.
+    unsafe { std::slice::from_raw_parts(points.as_ptr().cast(), points.len()) }
+}
+
+/// The coordinates of three corners one after the other.
+#[inline(always)]
+pub fn nine(corners: &[GzCoord; 3]) -> &[f32; 9] {
+    // SAFETY: as above, three times.
+    unsafe { &*std::ptr::from_ref(corners).cast() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_come_in_order() {
+        let points = [GzCoord::new(1.0, 2.0, 3.0), GzCoord::new(4.0, 5.0, 6.0), GzCoord::new(7.0, 8.0, 9.0)];
+        assert_eq!(coordinates(&points), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]]);
+        assert_eq!(coordinates_f64(&points.map(|p| p.as_dvec3()))[2], [7.0, 8.0, 9.0]);
+        assert_eq!(*nine(&points), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
+    }
+}
