@@ -49,6 +49,45 @@ impl ExactLine {
     }
 }
 
+/// The numbers of the definition for a line and a triangle, each times a power of two and of the start's weight.
+struct Volumes<'a> {
+    line: &'a ExactLine,
+    exponent: i32,
+    origin: Vector,
+    u: IBig,
+    v: IBig,
+    w: IBig,
+    whole: IBig,
+    m: IBig,
+}
+
+impl<'a> Volumes<'a> {
+    fn of(line: &'a Line, corners: &Triangle) -> Self {
+        let line = line.exact();
+        let (start, d) = (&line.start, &line.direction);
+        // One power of two for corners and start. With w the start's weight all differences are w times as long as they should be.
+        let shared: Vec<(Vector, i32)> = corners.iter().map(|corner| integers(corner.map(f64::from))).collect();
+        let exponent = shared.iter().map(|(_, e)| *e).min().unwrap_or(0).min(start.exponent);
+        let origin = start.coordinates.each_ref().map(|x| x << (start.exponent - exponent) as usize);
+        let from_origin = |k: usize| -> Vector {
+            let (corner, e) = &shared[k];
+            [0, 1, 2].map(|axis| (&corner[axis] << (e - exponent) as usize) * &start.weight - &origin[axis])
+        };
+        let [a, b, c] = [from_origin(0), from_origin(1), from_origin(2)];
+        let bc = cross(&b, &c);
+        let [u, v, w] = [dot(d, &bc), dot(d, &cross(&c, &a)), dot(d, &cross(&a, &b))];
+        let whole = &u + &v + &w;
+        let m = dot(&a, &bc);
+        Self { line, exponent, origin, u, v, w, whole, m }
+    }
+}
+
+/// Where the line of `line` meets the plane of a triangle; `None` when it runs along it, or the triangle has no area.
+pub fn plane_t(line: &Line, corners: &Triangle) -> Option<Fraction> {
+    let Volumes { line, exponent, whole, m, .. } = Volumes::of(line, corners);
+    (whole != IBig::ZERO).then(|| Fraction::new(m, whole * &line.start.weight, exponent - line.direction_exponent))
+}
+
 /// Where a line hits a triangle, without rounding.
 #[derive(Clone, Debug)]
 pub struct Meeting {
@@ -72,20 +111,8 @@ impl Meeting {
 
     /// The same for any t.
     fn of_whole_line(line: &Line, corners: &Triangle) -> Option<Self> {
-        let line = line.exact();
+        let Volumes { line, exponent, origin, u, v, w, whole, m } = Volumes::of(line, corners);
         let (start, d) = (&line.start, &line.direction);
-        // One power of two for corners and start. With w the start's weight all differences are w times as long as they should be.
-        let shared: Vec<(Vector, i32)> = corners.iter().map(|corner| integers(corner.map(f64::from))).collect();
-        let exponent = shared.iter().map(|(_, e)| *e).min().unwrap_or(0).min(start.exponent);
-        let origin = start.coordinates.each_ref().map(|x| x << (start.exponent - exponent) as usize);
-        let from_origin = |k: usize| -> Vector {
-            let (corner, e) = &shared[k];
-            [0, 1, 2].map(|axis| (&corner[axis] << (e - exponent) as usize) * &start.weight - &origin[axis])
-        };
-        let [a, b, c] = [from_origin(0), from_origin(1), from_origin(2)];
-        let bc = cross(&b, &c);
-        let [u, v, w] = [dot(d, &bc), dot(d, &cross(&c, &a)), dot(d, &cross(&a, &b))];
-        let whole = &u + &v + &w;
         let agrees = |x: &IBig| match whole.cmp(&IBig::ZERO) {
             Ordering::Greater => *x >= IBig::ZERO,
             Ordering::Less => *x <= IBig::ZERO,
@@ -94,8 +121,7 @@ impl Meeting {
         if ![&u, &v, &w].into_iter().all(agrees) {
             return None;
         }
-        // M has three factors of w, D two.
-        let m = dot(&a, &bc);
+        // M has three factors of the start's weight, D two.
         let t = Fraction::new(m.clone(), &whole * &start.weight, exponent - line.direction_exponent);
         // o + t d with t = m / (D w) over the common denominator D w; both terms are multiples of 2^exponent then.
         let sign = if whole < IBig::ZERO { -IBig::ONE } else { IBig::ONE };

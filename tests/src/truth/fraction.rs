@@ -46,6 +46,12 @@ impl Fraction {
         self.cmp(&Self::of(x))
     }
 
+    /// The same with the other sign.
+    #[must_use]
+    pub fn negated(&self) -> Self {
+        Self { numerator: -self.numerator.clone(), ..self.clone() }
+    }
+
     /// The difference to a finite number.
     #[must_use]
     pub fn minus(&self, x: f64) -> Self {

@@ -26,7 +26,7 @@ mod quick;
 #[cfg(test)]
 mod tests;
 
-pub use exact::{ExactPoint, Meeting, side};
+pub use exact::{ExactPoint, Meeting, plane_t, side};
 pub use fraction::Fraction;
 pub use line::{Line, Ray};
 

@@ -4,3 +4,4 @@ mod bad_input;
 mod folder;
 mod good_input;
 mod query;
+mod words;
