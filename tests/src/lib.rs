@@ -4,6 +4,7 @@
 pub mod bench;
 pub mod counting;
 pub mod folder;
+pub mod fuzz;
 pub mod hard;
 pub mod homework;
 pub mod judge;
