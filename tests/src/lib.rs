@@ -3,9 +3,14 @@
 
 pub mod bench;
 pub mod counting;
+pub mod folder;
+pub mod fuzz;
+pub mod hard;
 pub mod homework;
+pub mod judge;
 pub mod model;
 pub mod needs_scenes;
 pub mod needs_time;
 pub mod rendered;
 pub mod scenes;
+pub mod truth;

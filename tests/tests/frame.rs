@@ -13,7 +13,7 @@ const HEIGHT: u32 = 72;
 
 /// A picture of this size with one sample a pixel: further ones only repeat the work.
 const fn sized(width: u32, height: u32) -> Overrides {
-    Overrides { size: Some((width, height)), camera: None, depth: None, aa: Some(Antialias::None), fresnel: None }
+    Overrides { size: Some((width, height)), aa: Some(Antialias::None), ..Overrides::NONE }
 }
 
 const WHOLE: Tile = Tile { x0: 0, y0: 0, x1: WIDTH, y1: HEIGHT };

@@ -10,7 +10,7 @@ use gz_tests::scenes;
 use std::path::{Path, PathBuf};
 
 /// Small, with each scene's own antialiasing.
-const SMALL: Overrides = Overrides { size: Some((128, 96)), camera: None, depth: None, aa: None, fresnel: None };
+const SMALL: Overrides = Overrides { size: Some((128, 96)), ..Overrides::NONE };
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("needs")

@@ -1,5 +1,6 @@
 //! What answers rays: brute force or a tree, as the command line has it.
 
+use crate::args;
 use crate::cli::AccelArgs;
 use crate::error::AppError;
 use gz_bsp::{BspTree, CostStats, Midpoint, MidpointTree, TreeStats, VisitCount};
@@ -40,20 +41,21 @@ impl Accel {
     /// # Errors
     ///
     /// [`AppError::Usage`] for options that contradict each other.
-    pub fn of(args: &AccelArgs) -> Result<Self, AppError> {
+    pub fn of(asked: &AccelArgs) -> Result<Self, AppError> {
         let refuse = |what: &str| Err(AppError::Usage(what.to_owned()));
-        let sizes = args.max_depth.is_some() || args.min_size.is_some();
-        let kind = args.accel.unwrap_or(match args.kernel {
+        let sizes = asked.max_depth.is_some() || asked.min_size.is_some();
+        let kind = asked.accel.unwrap_or(match asked.kernel {
             Kernel::Certified => AccelKind::Bsp,
-            Kernel::Plane => AccelKind::Brute,
+            _ => AccelKind::Brute,
         });
-        match (kind, args.split) {
-            (AccelKind::Brute, _) if sizes || args.split.is_some() => {
+        match (kind, asked.split) {
+            (AccelKind::Brute, _) if sizes || asked.split.is_some() => {
                 refuse("--split, --max-depth and --min-size are of the tree: use --accel bsp with --kernel certified")
             }
-            (AccelKind::Brute, _) => Ok(Self::Brute(args.kernel)),
-            (AccelKind::Bsp, _) if args.kernel != Kernel::Certified => {
-                refuse("--kernel plane is for comparison by brute force: use --accel brute")
+            (AccelKind::Brute, _) => Ok(Self::Brute(asked.kernel)),
+            (AccelKind::Bsp, _) if asked.kernel != Kernel::Certified => {
+                let name = args::kernel_name(asked.kernel);
+                refuse(&format!("--kernel {name} is for comparison by brute force: use --accel brute"))
             }
             (AccelKind::Bsp, Some(Split::Sah)) if sizes => {
                 refuse("--max-depth and --min-size are of the paper's tree: use --split midpoint")
@@ -61,8 +63,8 @@ impl Accel {
             (AccelKind::Bsp, split) if sizes || split == Some(Split::Midpoint) => {
                 let default = Midpoint::default();
                 Ok(Self::Midpoint(Midpoint {
-                    max_depth: args.max_depth.unwrap_or(default.max_depth),
-                    min_size: args.min_size.unwrap_or(default.min_size),
+                    max_depth: asked.max_depth.unwrap_or(default.max_depth),
+                    min_size: asked.min_size.unwrap_or(default.min_size),
                     ..default
                 }))
             }
@@ -176,8 +178,9 @@ mod tests {
     #[test]
     fn the_tree_that_tunes_itself_is_the_default() {
         assert_eq!(Accel::of(&NOTHING).unwrap(), Accel::Bsp);
-        let plane = AccelArgs { kernel: Kernel::Plane, ..NOTHING };
-        assert_eq!(Accel::of(&plane).unwrap(), Accel::Brute(Kernel::Plane));
+        for kernel in Kernel::ALL.into_iter().skip(1) {
+            assert_eq!(Accel::of(&AccelArgs { kernel, ..NOTHING }).unwrap(), Accel::Brute(kernel));
+        }
         let paper = AccelArgs { max_depth: Some(8), ..NOTHING };
         assert_eq!(Accel::of(&paper).unwrap(), Accel::Midpoint(Midpoint { max_depth: 8, ..Midpoint::default() }));
     }

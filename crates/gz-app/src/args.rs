@@ -3,7 +3,7 @@
 use crate::accel::{AccelKind, Split};
 use crate::progress::ProgressMode;
 use crate::view::View;
-use gz_core::{CameraModel, Kernel, Tile};
+use gz_core::{CameraModel, Kernel, LeavePolicy, Tile};
 use gz_shade::{Antialias, Fresnel};
 
 const ACCELS: [(&str, AccelKind); 2] = [("brute", AccelKind::Brute), ("bsp", AccelKind::Bsp)];
@@ -15,7 +15,24 @@ const CAMERAS: [(&str, CameraModel); 4] = [
     ("pinhole", CameraModel::Pinhole),
 ];
 const FRESNELS: [(&str, Fresnel); 2] = [("exact", Fresnel::Exact), ("schlick", Fresnel::Schlick)];
-const KERNELS: [(&str, Kernel); 2] = [("certified", Kernel::Certified), ("plane", Kernel::Plane)];
+const KERNELS: [(&str, Kernel); 8] = [
+    ("certified", Kernel::Certified),
+    ("plane", Kernel::Plane),
+    ("moeller-trumbore", Kernel::MoellerTrumbore),
+    ("moeller-trumbore-f64", Kernel::MoellerTrumboreF64),
+    ("woop", Kernel::Woop),
+    ("woop-fused", Kernel::WoopFused),
+    ("pluecker", Kernel::Pluecker),
+    ("baldwin-weber", Kernel::BaldwinWeber),
+];
+const LEAVES: [(&str, LeavePolicy); 6] = [
+    ("exact", LeavePolicy::Exact),
+    ("bare", LeavePolicy::Bare),
+    ("identity", LeavePolicy::Identity),
+    ("epsilon", LeavePolicy::USUAL_EPSILON),
+    ("waechter-binder", LeavePolicy::WaechterBinder),
+    ("error-bound", LeavePolicy::ErrorBound),
+];
 const VIEWS: [(&str, View); 3] = [("t", View::T), ("id", View::Id), ("normal", View::Normal)];
 const PROGRESS: [(&str, ProgressMode); 4] =
     [("auto", ProgressMode::Auto), ("plain", ProgressMode::Plain), ("json", ProgressMode::Json), ("none", ProgressMode::None)];
@@ -61,7 +78,7 @@ pub fn fresnel_name(fresnel: Fresnel) -> &'static str {
     name_of(fresnel, &FRESNELS)
 }
 
-/// `certified` or `plane`.
+/// A ray-triangle test by name.
 pub(crate) fn kernel(text: &str) -> Result<Kernel, String> {
     named(text, &KERNELS)
 }
@@ -69,6 +86,25 @@ pub(crate) fn kernel(text: &str) -> Result<Kernel, String> {
 /// The name of a kernel.
 pub fn kernel_name(kernel: Kernel) -> &'static str {
     name_of(kernel, &KERNELS)
+}
+
+/// A way to leave a surface by name, or `epsilon=T` with T at least 0.
+pub(crate) fn leave(text: &str) -> Result<LeavePolicy, String> {
+    match text.strip_prefix("epsilon=") {
+        Some(number) => match number.parse::<f32>() {
+            Ok(t) if t >= 0.0 && t.is_finite() => Ok(LeavePolicy::Epsilon(t)),
+            _ => Err("epsilon=T takes a number from 0 up".to_owned()),
+        },
+        None => named(text, &LEAVES),
+    }
+}
+
+/// The option text of a way to leave a surface.
+pub fn leave_name(policy: LeavePolicy) -> String {
+    match policy {
+        LeavePolicy::Epsilon(t) if policy != LeavePolicy::USUAL_EPSILON => format!("epsilon={t}"),
+        _ => name_of(policy, &LEAVES).to_owned(),
+    }
 }
 
 /// `t`, `id` or `normal`.
@@ -169,10 +205,26 @@ mod tests {
         for (name, model) in CAMERAS {
             assert_eq!((camera(name), camera_name(model)), (Ok(model), name));
         }
+        for kernel in Kernel::ALL {
+            assert_eq!(super::kernel(kernel_name(kernel)), Ok(kernel));
+        }
         assert_eq!(camera("orthographic"), Err("it is one of homework, paper, screen, pinhole".to_owned()));
         assert_eq!((antialias("hw6"), antialias("16")), (Ok(Antialias::Hw6), Ok(Antialias::Samples(16))));
         assert!(antialias("0").is_err() && antialias("lots").is_err());
         assert!(tolerance("-1").is_err() && tolerance("NaN").is_err() && tolerance("0.5") == Ok(0.5));
+    }
+
+    #[test]
+    fn ways_to_leave_are_names_and_one_takes_a_number() {
+        for (name, policy) in LEAVES {
+            assert_eq!((leave(name), leave_name(policy)), (Ok(policy), name.to_owned()));
+        }
+        assert_eq!(leave("epsilon=0.25"), Ok(LeavePolicy::Epsilon(0.25)));
+        assert_eq!(leave_name(LeavePolicy::Epsilon(0.25)), "epsilon=0.25");
+        assert_eq!(leave("epsilon=-1"), Err("epsilon=T takes a number from 0 up".to_owned()));
+        assert!(
+            leave("epsilon=NaN").is_err() && leave("epsilon=").is_err() && leave("pbrt").unwrap_err().contains("error-bound")
+        );
     }
 
     #[test]

@@ -5,9 +5,9 @@ use crate::args;
 use crate::error::AppError;
 use crate::progress::{ProgressMode, say};
 use crate::view::View;
-use crate::{compare, info, job, pixel_report, render};
+use crate::{compare, info, job, pixel_report, query, render};
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use gz_core::{CameraModel, Kernel, Tile};
+use gz_core::{CameraModel, Kernel, LeavePolicy, Tile};
 use gz_shade::{Antialias, Fresnel};
 use std::ffi::OsString;
 use std::io::Write;
@@ -33,6 +33,8 @@ enum Command {
     Compare(CompareArgs),
     /// Print what a scene holds and needs
     Info(InfoArgs),
+    /// Cast a file of rays at a mesh and write their hits
+    Query(QueryArgs),
     /// Explain one pixel: its ray, what the ray meets, and its colour
     Pixel(PixelArgs),
 }
@@ -54,6 +56,10 @@ pub struct SceneArgs {
     /// Reflected share at glass: exact or schlick (the paper's equations 2 and 3)
     #[arg(long, value_name = "HOW", value_parser = args::fresnel)]
     pub fresnel: Option<Fresnel>,
+    /// How shadow, mirror and glass rays leave a surface: exact; or for comparison bare, identity (the paper's), epsilon,
+    /// epsilon=T, waechter-binder, error-bound
+    #[arg(long, value_name = "POLICY", value_parser = args::leave)]
+    pub leave: Option<LeavePolicy>,
     /// Samples a pixel: none, hw6 (the course's six) or a number
     #[arg(long, value_name = "none|hw6|N", value_parser = args::antialias)]
     pub aa: Option<Antialias>,
@@ -68,7 +74,8 @@ pub struct SceneArgs {
 /// What answers rays.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct AccelArgs {
-    /// Ray-triangle test: certified (exact) or plane (the paper's, for comparison, by brute force)
+    /// Ray-triangle test: certified (exact); or for comparison, by brute force, plane (the paper's), moeller-trumbore,
+    /// moeller-trumbore-f64, woop, woop-fused, pluecker, baldwin-weber
     #[arg(long, value_name = "NAME", value_parser = args::kernel, default_value = "certified")]
     pub kernel: Kernel,
     /// What answers rays: bsp (the tree, the default) or brute (every triangle)
@@ -109,6 +116,10 @@ pub struct RenderArgs {
     /// Write the T-value of each pixel: 16 bytes each, f32 t, u32 triangle, f32 u, f32 v, row 0 on top
     #[arg(long, value_name = "FILE")]
     pub tbuffer: Option<PathBuf>,
+    /// Write the primary ray of each pixel, 32 bytes each as gz query reads them, row 0 on top; with the extension .rays64 as f64, which
+    /// keeps the origin's bits. They are in the space in which the camera model traces, under pinhole the world
+    #[arg(long, value_name = "FILE")]
+    pub rays_out: Option<PathBuf>,
     /// Show T-values (t), triangles (id) or face normals (normal) in place of colours
     #[arg(long, value_name = "WHAT", value_parser = args::view)]
     pub view: Option<View>,
@@ -161,6 +172,32 @@ pub struct PixelArgs {
     pub compare: Option<AccelKind>,
 }
 
+/// `gz query`.
+#[derive(Args, Clone, Debug)]
+pub struct QueryArgs {
+    /// Mesh (.obj, .asc) or scene (.toml, in world space)
+    #[arg(long, value_name = "FILE")]
+    pub mesh: PathBuf,
+    /// Rays: 32 bytes each, f32 ox oy oz tmin dx dy dz tmax, little-endian, no header
+    #[arg(long, value_name = "FILE", required_unless_present = "rays64", conflicts_with = "rays64")]
+    pub rays: Option<PathBuf>,
+    /// Rays as f64, 64 bytes each; all but the origin is rounded to f32
+    #[arg(long, value_name = "FILE")]
+    pub rays64: Option<PathBuf>,
+    /// Hits: 16 bytes each, f32 t (infinity for a miss), u32 triangle (0xffffffff for a miss), f32 u, f32 v
+    #[arg(long, value_name = "FILE")]
+    pub hits: PathBuf,
+    /// Only ask whether a ray meets anything: 16 zero bytes if it does, a miss if not
+    #[arg(long)]
+    pub any: bool,
+    /// What answers rays.
+    #[command(flatten)]
+    pub accel: AccelArgs,
+    /// Threads, 0 for all cores
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+}
+
 /// Runs `gz` with these arguments, the program's name first. Returns the exit code, having said on standard error why it is not 0.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let done = match Cli::try_parse_from(arguments) {
@@ -192,6 +229,7 @@ fn execute(command: &Command) -> Result<(), AppError> {
             comparison.verdict
         }
         Command::Info(args) => print(&info::report(args)?),
+        Command::Query(args) => print(&query::query(args)?),
         Command::Pixel(args) => {
             let explained = pixel_report::explain(args)?;
             print(&explained.report)?;
@@ -219,13 +257,14 @@ mod tests {
 
     #[test]
     fn every_render_option_is_understood() {
-        let line = "gz render a.toml -o b.png --size 320x200 --camera paper --accel brute --depth 4 --fresnel schlick --kernel plane \
+        let line = "gz render a.toml -o b.png --size 320x200 --camera paper --accel brute --depth 4 --fresnel schlick --kernel plane --leave identity \
                     --aa 16 --threads 3 --tile 8 --crop 1,2,30,40 --progress json --stats-json s.json --explain --view id";
         let Some(Command::Render(args)) = Cli::try_parse_from(line.split_whitespace()).unwrap().command else {
             panic!("not a render");
         };
         assert_eq!((args.scene.size, args.scene.camera), (Some((320, 200)), Some(CameraModel::Paper)));
         assert_eq!((args.scene.depth, args.scene.fresnel), (Some(4), Some(Fresnel::Schlick)));
+        assert_eq!(args.scene.leave, Some(LeavePolicy::Identity));
         assert_eq!((args.scene.accel.kernel, args.scene.aa), (Kernel::Plane, Some(Antialias::Samples(16))));
         assert_eq!((args.crop, args.tile), (Some(Tile { x0: 1, y0: 2, x1: 30, y1: 40 }), 8));
         assert_eq!((args.progress, args.view, args.explain), (ProgressMode::Json, Some(View::Id), true));

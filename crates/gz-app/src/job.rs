@@ -40,6 +40,8 @@ pub struct RenderJob {
     pub stats_json: Option<NewFile>,
     /// Where the T-buffer goes.
     pub tbuffer: Option<NewFile>,
+    /// Where the primary rays go.
+    pub rays_out: Option<NewFile>,
     /// What to show in place of colours.
     pub view: Option<View>,
     /// Whether to say what the scene needs.
@@ -62,8 +64,8 @@ impl RenderJob {
             None => default_output(&scene),
         };
         let format = ImageFormat::of(&output)?;
-        if args.tbuffer.is_some() && args.scene.aa.is_some_and(takes_many) {
-            return Err(tbuffer_with_antialiasing());
+        if args.scene.aa.is_some_and(takes_many) {
+            one_sample(args.tbuffer.is_some(), args.rays_out.is_some())?;
         }
         // Everything is asked for before anything is touched: two names for one file would lose one of them.
         let mut taken = vec![("", scene.clone())];
@@ -84,6 +86,7 @@ impl RenderJob {
             format,
             stats_json: args.stats_json.as_deref().map(|path| new_file("--stats-json", path)).transpose()?,
             tbuffer: args.tbuffer.as_deref().map(|path| new_file("--tbuffer", path)).transpose()?,
+            rays_out: args.rays_out.as_deref().map(|path| new_file("--rays-out", path)).transpose()?,
             overrides: overrides(&args.scene),
             scene,
             accel,
@@ -100,7 +103,7 @@ impl RenderJob {
     ///
     /// # Errors
     ///
-    /// [`AppError::Usage`] for a crop outside of the picture, too many pixels, or a T-buffer of an antialiased scene.
+    /// [`AppError::Usage`] for a crop outside of the picture, too many pixels, or a T-buffer or rays of an antialiased scene.
     pub fn area(&self, scene: &Scene) -> Result<Tile, AppError> {
         let (width, height) = (scene.camera.width(), scene.camera.height());
         let area = self.crop.unwrap_or(Tile { x0: 0, y0: 0, x1: width, y1: height });
@@ -117,8 +120,8 @@ impl RenderJob {
                 area.height()
             )));
         }
-        if self.tbuffer.is_some() && takes_many(scene.rules.antialias) {
-            return Err(tbuffer_with_antialiasing());
+        if takes_many(scene.rules.antialias) {
+            one_sample(self.tbuffer.is_some(), self.rays_out.is_some())?;
         }
         Ok(area)
     }
@@ -126,7 +129,7 @@ impl RenderJob {
 
 /// The changes to the scene that these options ask for.
 pub fn overrides(args: &SceneArgs) -> Overrides {
-    Overrides { size: args.size, camera: args.camera, depth: args.depth, aa: args.aa, fresnel: args.fresnel }
+    Overrides { size: args.size, camera: args.camera, depth: args.depth, aa: args.aa, fresnel: args.fresnel, leave: args.leave }
 }
 
 /// The scene's name with `.png`, in the current folder.
@@ -141,8 +144,13 @@ fn takes_many(rule: Antialias) -> bool {
     !matches!(rule, Antialias::None | Antialias::Samples(0 | 1))
 }
 
-fn tbuffer_with_antialiasing() -> AppError {
-    AppError::Usage("--tbuffer: an antialiased pixel has no single T-value, use --aa none".to_owned())
+/// Refuses under antialiasing what there is one of a pixel.
+fn one_sample(tbuffer: bool, rays_out: bool) -> Result<(), AppError> {
+    match (tbuffer, rays_out) {
+        (true, _) => Err(AppError::Usage("--tbuffer: an antialiased pixel has no single T-value, use --aa none".to_owned())),
+        (_, true) => Err(AppError::Usage("--rays-out: an antialiased pixel has no single ray, use --aa none".to_owned())),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]

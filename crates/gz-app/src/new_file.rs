@@ -56,17 +56,26 @@ impl NewFile {
     ///
     /// [`AppError::Io`] if it cannot be written; the temporary file is then removed.
     pub fn write(&self, bytes: &[u8]) -> Result<(), AppError> {
+        self.write_with(|file| file.write_all(bytes).map_err(|error| self.refused(&error)))
+    }
+
+    /// Writes the whole content piece by piece, as `fill` hands it over.
+    ///
+    /// # Errors
+    ///
+    /// [`AppError::Io`] if it cannot be written, and whatever `fill` fails with; the temporary file is then removed.
+    pub fn write_with(&self, fill: impl FnOnce(&mut std::fs::File) -> Result<(), AppError>) -> Result<(), AppError> {
         let temporary = self.temporary();
-        let write = || -> std::io::Result<()> {
-            let mut file = std::fs::File::create(&temporary)?;
-            file.write_all(bytes)?;
-            file.flush()?;
+        let write = || -> Result<(), AppError> {
+            let refused = |error: std::io::Error| self.refused(&error);
+            let mut file = std::fs::File::create(&temporary).map_err(refused)?;
+            fill(&mut file)?;
+            file.flush().map_err(refused)?;
             drop(file);
-            std::fs::rename(&temporary, &self.path)
+            std::fs::rename(&temporary, &self.path).map_err(refused)
         };
-        write().map_err(|error| {
+        write().inspect_err(|_| {
             let _ = std::fs::remove_file(&temporary); // it may not exist: the first error is the one to tell
-            self.refused(&error)
         })
     }
 
@@ -80,7 +89,8 @@ impl NewFile {
         self.folder().join(format!(".{name}.{}.part", std::process::id()))
     }
 
-    fn refused(&self, error: &std::io::Error) -> AppError {
+    /// What to tell when writing into this file fails.
+    pub fn refused(&self, error: &std::io::Error) -> AppError {
         let cause = match error.kind() {
             ErrorKind::PermissionDenied => format!("permission denied in folder {}", self.folder().display()),
             ErrorKind::StorageFull => "the disk is full".to_owned(),

@@ -3,9 +3,10 @@
 use crate::error::AppError;
 use crate::job::RenderJob;
 use crate::progress::Progress;
+use crate::rays_file::RayFormat;
 use crate::stats::{Clock, RenderStats};
 use crate::view::trace_hits;
-use crate::{explain, hits_file, load, output, threads};
+use crate::{explain, hits_file, load, output, rays_file, threads};
 use gz_core::TileGrid;
 use gz_shade::{SceneNeeds, shade_frame};
 
@@ -55,6 +56,9 @@ fn frame(job: &RenderJob) -> Result<String, AppError> {
     job.output.write(&output::picture(&frame, job.format, scene.rules.color_code)?)?;
     if let (Some(file), Some(hits)) = (&job.tbuffer, &hits) {
         file.write(&hits_file::encode(hits))?;
+    }
+    if let Some(file) = &job.rays_out {
+        file.write(&rays_file::primary(&scene.camera, &area, RayFormat::of(file.path())))?;
     }
     clock.lap("write");
 

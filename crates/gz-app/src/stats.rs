@@ -109,6 +109,7 @@ impl RenderStats<'_> {
                 "kernel": args::kernel_name(job.accel.kernel()),
                 "depth": scene.rules.depth,
                 "fresnel": args::fresnel_name(scene.rules.fresnel),
+                "leave": args::leave_name(scene.rules.leave),
                 "aa": args::antialias_name(scene.rules.antialias),
                 "threads": self.threads,
                 "tile": job.tile,

@@ -52,9 +52,11 @@ impl Bounds {
         if self.is_empty() { GzCoord::ZERO } else { self.max - self.min }
     }
 
-    /// The middle of the box, formed so that it cannot overflow. NaN for an empty box.
+    /// The middle of the box, formed so that it cannot overflow; it lies in the box. NaN for an empty box.
     pub fn centre(&self) -> GzCoord {
-        self.min * 0.5 + self.max * 0.5
+        let middle = self.min * 0.5 + self.max * 0.5;
+        // Halves of subnormal numbers are rounded, and their sum may be beyond either end.
+        if self.is_empty() { middle } else { middle.max(self.min).min(self.max) }
     }
 
     /// Surface area; 0 for an empty box.
@@ -92,5 +94,16 @@ mod tests {
     fn centre_of_the_widest_box_does_not_overflow() {
         let b = Bounds { min: GzCoord::splat(3e38), max: GzCoord::splat(3e38) };
         assert_eq!(b.centre(), GzCoord::splat(3e38));
+        assert!(Bounds::EMPTY.centre().is_nan());
+    }
+
+    #[test]
+    fn centre_of_a_subnormal_box_lies_in_it() {
+        for (lo, hi) in [(1, 1), (3, 3), (1, 2), (3, 4), (5, 9)] {
+            let (min, max) = (GzCoord::splat(f32::from_bits(lo)), GzCoord::splat(f32::from_bits(hi)));
+            for b in [Bounds { min, max }, Bounds { min: -max, max: -min }] {
+                assert!(b.centre().cmpge(b.min).all() && b.centre().cmple(b.max).all(), "{b:?}");
+            }
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Every ray against every triangle: the specification of [`RayQuery`].
 
-use crate::kernel::{Closest, FilterRay, FilterSpace, TriGroup, is_hit, plane_then_inside};
+use crate::kernel::{Closest, FilterRay, FilterSpace, TriGroup, is_hit, plain};
 use crate::simd::{Simd, Task, dispatch, with_default_float_control};
 use crate::{ClassMask, GzRay, Hit, Kernel, NO_TRI, RayBatch, RayQuery, SimdLevel, TriBuffer, TriId};
 
@@ -78,7 +78,7 @@ impl<'a> BruteForce<'a> {
         let mut best = Hit::MISS;
         for (tri, corners) in (0..).zip(self.tris.positions()) {
             if classes.has(self.tris.class(tri))
-                && let Some((t, u, v)) = plane_then_inside(ray, corners)
+                && let Some((t, u, v)) = plain(self.kernel, ray, corners)
                 && (!best.is_hit() || t < best.t)
             {
                 best = Hit { t, tri, u, v };
@@ -122,7 +122,7 @@ impl RayQuery for BruteForce<'_> {
 
     fn closest_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, hits: &mut [Hit]) {
         assert_eq!(rays.len(), hits.len(), "one hit a ray");
-        if self.kernel == Kernel::Plane {
+        if self.kernel != Kernel::Certified {
             for (i, hit) in hits.iter_mut().enumerate() {
                 *hit = Some(rays.ray(i)).filter(GzRay::is_valid).map_or(Hit::MISS, |ray| self.plain_closest(&ray, classes));
             }
@@ -143,7 +143,7 @@ impl RayQuery for BruteForce<'_> {
 
     fn any_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "one answer a ray");
-        if self.kernel == Kernel::Plane {
+        if self.kernel != Kernel::Certified {
             for (i, occluded) in occluded.iter_mut().enumerate() {
                 *occluded =
                     Some(rays.ray(i)).filter(GzRay::is_valid).is_some_and(|ray| self.plain_closest(&ray, classes).is_hit());

@@ -8,7 +8,7 @@ use crate::refraction::refract;
 use crate::tree::{Node, RayKind};
 use crate::{FrameStats, GlassBlend, MaterialKind, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
-use gz_core::{GzColor, GzCoord, GzRay, leave_surface, side_of};
+use gz_core::{GzColor, GzCoord, GzRay, side_of};
 
 /// Branches that weigh less than this of their pixel, in their strongest channel, end. It is a sixteenth of a step of a 12-bit
 /// picture and less than a hundredth of one of an 8-bit picture, as long as what the branch sees is not much brighter than 1.
@@ -195,12 +195,12 @@ impl Bouncer<'_> {
             self.stats.weak_weight = self.stats.weak_weight.saturating_add(FrameStats::units(weight));
             return false;
         }
-        let start = direction.and_then(|d| Some((leave_surface(&meeting.at.corners, meeting.at.weights, d)?, d)));
-        let Some((origin, direction)) = start else {
+        let policy = self.scene.rules.leave;
+        let Some(ray) = direction.and_then(|d| policy.leave(&meeting.at.corners, meeting.at.weights, d)) else {
             self.stats.absorbed += 1;
             return false;
         };
-        self.branches.push(Branch { ray: GzRay::from_f64(origin, direction), ..branch });
+        self.branches.push(Branch { ray, ..branch });
         true
     }
 

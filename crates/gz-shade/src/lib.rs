@@ -25,6 +25,7 @@ pub mod refraction;
 mod rules;
 mod scene;
 mod shadow;
+mod source;
 mod stats;
 mod texture;
 mod tree;

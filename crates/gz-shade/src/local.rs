@@ -6,7 +6,7 @@ use crate::shadow::{ShadowRay, ShadowRays, Shadows};
 use crate::tree::Node;
 use crate::{Eye, FrameStats, GzLight, Interpolate, LightKind, Material, Scene, SceneNeeds, ShadowRule, Surface, Texture};
 use glam::DVec3;
-use gz_core::{GzColor, RayQuery, leave_surface, side_of};
+use gz_core::{GzColor, GzRay, RayQuery, side_of};
 
 /// A hit that is shaded.
 #[derive(Debug)]
@@ -111,7 +111,7 @@ impl Lighting {
                 Lit::Adds { color, start } => (color, start),
             };
             if let Some(start) = start {
-                self.rays.push(start.origin, start.direction, start.tmax, item.at.tri);
+                self.rays.push(&start);
             }
             self.addends.push(Addend { item: id as u32, color });
         }
@@ -179,9 +179,9 @@ impl Item {
         if !casting {
             return Lit::Adds { color, start: None };
         }
-        match leave_surface(&self.at.corners, self.at.weights, arrival.direction) {
-            Some(origin) => {
-                Lit::Adds { color, start: Some(ShadowRay { origin, direction: arrival.direction, tmax: arrival.tmax }) }
+        match scene.rules.leave.leave(&self.at.corners, self.at.weights, arrival.direction) {
+            Some(GzRay { origin, direction, .. }) => {
+                Lit::Adds { color, start: Some(ShadowRay { origin, direction, tmax: arrival.tmax, leaves: self.at.tri }) }
             }
             None => Lit::InPlane,
         }

@@ -1,5 +1,7 @@
 //! The rules of shading: physics by default, the course's and the paper's by name.
 
+use gz_core::LeavePolicy;
+
 /// How colours are computed, where the course, the paper and physics differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadeRules {
@@ -32,6 +34,8 @@ pub struct ShadeRules {
     pub reflect_last_light: bool,
     /// How colours are written to a picture.
     pub color_code: ColorCode,
+    /// Where shadow, mirror and glass rays start. All but the exact one are for comparison.
+    pub leave: LeavePolicy,
 }
 
 /// The reflected share at a boundary.
@@ -122,6 +126,7 @@ impl ShadeRules {
         glass_blend: GlassBlend::Physical,
         reflect_last_light: false,
         color_code: ColorCode::Srgb,
+        leave: LeavePolicy::Exact,
     };
 
     /// What the homework does, HW2 to HW6.

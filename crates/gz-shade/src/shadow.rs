@@ -4,9 +4,10 @@
 //! ambient light stays. We differ from the paper in that glass may tint instead of block, rays to a point light end before it, and P
 //! lies provably on the side that L points to instead of the triangle being skipped by its number.
 
+use crate::source::{leaving, skip_sources};
 use crate::{Scene, ShadowRule};
 use glam::DVec3;
-use gz_core::{ClassMask, GzColor, GzCoord, Hit, NO_TRI, PerRay, RayBatch, RayQuery, TriClass, TriId};
+use gz_core::{ClassMask, GzColor, GzCoord, Hit, LeavePolicy, PerRay, RayBatch, RayQuery, TriClass, TriId};
 
 /// A ray from a surface to a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +18,8 @@ pub struct ShadowRay {
     pub direction: GzCoord,
     /// Where it ends, t in lengths of `direction`: infinite for a directional light.
     pub tmax: f32,
+    /// The triangle that it leaves.
+    pub leaves: TriId,
 }
 
 /// The shadow rays of one light: one direction and no end for a directional light, one of each per ray for a point light.
@@ -26,7 +29,7 @@ pub(crate) struct ShadowRays {
     pub(crate) directions: Vec<GzCoord>,
     pub(crate) tmax: Vec<f32>,
     /// The triangles that they leave.
-    pub(crate) leaves: Vec<TriId>,
+    leaves: Vec<TriId>,
 }
 
 impl ShadowRays {
@@ -38,22 +41,39 @@ impl ShadowRays {
         self.leaves.clear();
     }
 
-    /// Adds a ray that leaves triangle `leaves` by [`gz_core::leave_surface`].
-    pub(crate) fn push(&mut self, origin: DVec3, direction: GzCoord, tmax: f32, leaves: TriId) {
-        self.origins.push(origin);
-        self.directions.push(direction);
-        self.tmax.push(tmax);
-        self.leaves.push(leaves);
+    /// Adds a ray.
+    pub(crate) fn push(&mut self, ray: &ShadowRay) {
+        self.origins.push(ray.origin);
+        self.directions.push(ray.direction);
+        self.tmax.push(ray.tmax);
+        self.leaves.push(ray.leaves);
+    }
+
+    /// The ray of this number.
+    fn ray(&self, k: usize) -> ShadowRay {
+        ShadowRay { origin: self.origins[k], direction: self.directions[k], tmax: self.tmax[k], leaves: self.leaves[k] }
     }
 
     /// The rays as a batch. `common_direction`: all directions are equal, and without end.
-    fn batch(&self, common_direction: bool) -> RayBatch<'_> {
-        let (len, origins) = (self.origins.len(), PerRay::Each(&self.origins[..]));
+    fn batch(&self, common_direction: bool, policy: LeavePolicy) -> RayBatch<'_> {
+        let (len, origins, tmin) = (self.origins.len(), PerRay::Each(&self.origins[..]), PerRay::One(policy.tmin()));
         let batch = match self.directions.first() {
-            Some(&direction) if common_direction => RayBatch::unbounded(len, origins, PerRay::One(direction)),
-            _ => RayBatch::new(len, origins, PerRay::Each(&self.directions), PerRay::One(0.0), PerRay::Each(&self.tmax)),
+            Some(&direction) if common_direction => {
+                RayBatch::new(len, origins, PerRay::One(direction), tmin, PerRay::One(f32::INFINITY))
+            }
+            _ => RayBatch::new(len, origins, PerRay::Each(&self.directions), tmin, PerRay::Each(&self.tmax)),
         };
-        batch.leaving(&self.leaves)
+        leaving(batch, policy, &self.leaves)
+    }
+
+    /// The front-most hits of the rays among `classes`, their own triangles left out where the rules say so.
+    fn closest(&self, scene: &Scene, query: &dyn RayQuery, batch: &RayBatch<'_>, classes: ClassMask, hits: &mut Vec<Hit>) {
+        hits.clear();
+        hits.resize(batch.len(), Hit::MISS);
+        query.closest_hits(batch, classes, hits);
+        if scene.rules.leave.skips_source() {
+            skip_sources(query, batch, classes, &self.leaves, hits);
+        }
     }
 }
 
@@ -68,11 +88,11 @@ fn blockers(scene: &Scene) -> ClassMask {
 /// What one shadow ray finds: the share of the light that reaches its start, and the first triangle that lets none through, if any.
 pub(crate) fn look(scene: &Scene, query: &dyn RayQuery, ray: &ShadowRay) -> (GzColor, Hit) {
     let mut rays = ShadowRays::default();
-    rays.push(ray.origin, ray.direction, ray.tmax, NO_TRI);
+    rays.push(ray);
     let mut shadows = Shadows::default();
     shadows.trace(scene, query, &rays, false);
-    let mut blocker = [Hit::MISS];
-    query.closest_hits(&rays.batch(false), blockers(scene), &mut blocker);
+    let mut blocker = Vec::new();
+    rays.closest(scene, query, &rays.batch(false, scene.rules.leave), blockers(scene), &mut blocker);
     (shadows.shares[0], blocker[0])
 }
 
@@ -94,9 +114,16 @@ impl Shadows {
     pub(crate) fn trace(&mut self, scene: &Scene, query: &dyn RayQuery, rays: &ShadowRays, common_direction: bool) -> u64 {
         let tinted = scene.rules.shadow == ShadowRule::Tinted;
         let blockers = blockers(scene);
+        let batch = rays.batch(common_direction, scene.rules.leave);
         self.blocked.clear();
-        self.blocked.resize(rays.origins.len(), false);
-        query.any_hits(&rays.batch(common_direction), blockers, &mut self.blocked);
+        if scene.rules.leave.skips_source() {
+            // *That* something is hit is not enough: it may be the triangle left.
+            rays.closest(scene, query, &batch, blockers, &mut self.hits);
+            self.blocked.extend(self.hits.iter().map(Hit::is_hit));
+        } else {
+            self.blocked.resize(batch.len(), false);
+            query.any_hits(&batch, blockers, &mut self.blocked);
+        }
         self.shares.clear();
         self.shares.extend(self.blocked.iter().map(|&blocked| if blocked { GzColor::ZERO } else { GzColor::ONE }));
         if tinted { self.tint(scene, query, rays) } else { 0 }
@@ -109,12 +136,11 @@ impl Shadows {
         self.on_way.clear();
         self.on_way.extend((0..rays.origins.len() as u32).filter(|&k| !self.blocked[k as usize]));
         self.tmin.clear();
-        self.tmin.resize(self.on_way.len(), 0.0);
+        self.tmin.resize(self.on_way.len(), scene.rules.leave.tmin());
         while !self.on_way.is_empty() {
             self.rest.clear();
             for &k in &self.on_way {
-                let k = k as usize;
-                self.rest.push(rays.origins[k], rays.directions[k], rays.tmax[k], rays.leaves[k]);
+                self.rest.push(&rays.ray(k as usize));
             }
             let batch = RayBatch::new(
                 self.on_way.len(),
@@ -122,11 +148,9 @@ impl Shadows {
                 PerRay::Each(&self.rest.directions),
                 PerRay::Each(&self.tmin),
                 PerRay::Each(&self.rest.tmax),
-            )
-            .leaving(&self.rest.leaves);
-            self.hits.clear();
-            self.hits.resize(self.on_way.len(), Hit::MISS);
-            query.closest_hits(&batch, ClassMask::only(TriClass::Glass), &mut self.hits);
+            );
+            let batch = leaving(batch, scene.rules.leave, &self.rest.leaves);
+            self.rest.closest(scene, query, &batch, ClassMask::only(TriClass::Glass), &mut self.hits);
             questions += self.on_way.len() as u64;
             // Keep the rays that met glass, to ask again behind it.
             let mut kept = 0;

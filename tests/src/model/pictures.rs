@@ -46,7 +46,7 @@ pub(super) fn shot_by(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery) ->
 
 /// Overrides with one sample a pixel.
 pub(super) const fn sized(width: u32, height: u32) -> Overrides {
-    Overrides { size: Some((width, height)), camera: None, depth: None, aa: Some(Antialias::None), fresnel: None }
+    Overrides { size: Some((width, height)), aa: Some(Antialias::None), ..Overrides::NONE }
 }
 
 impl Shot {

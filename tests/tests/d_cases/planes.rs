@@ -7,7 +7,7 @@ use gz_core::{GzCoord, GzRay};
 const PLANES: [f32; 8] = [6.0, 3.0, 9.0, 1.5, 4.5, 0.75, 12.0, 0.0];
 
 #[test]
-fn d1_ray_in_a_split_plane() {
+fn d01_ray_in_a_split_plane() {
     let mut rays = vec![GzRay::new(v(6.0, 1.0, -1.0), v(0.0, 0.3, 1.0)), GzRay::new(v(6.0, 1.0, -1.0), v(-0.0, 0.3, 1.0))];
     for k in 0..3 {
         for plane in PLANES {
@@ -23,7 +23,7 @@ fn d1_ray_in_a_split_plane() {
 }
 
 #[test]
-fn d2_ray_in_the_plane_with_triangles_on_both_sides() {
+fn d02_ray_in_the_plane_with_triangles_on_both_sides() {
     let mut triangles = cube();
     // Triangles that end at, just before, just beyond the plane x = 6 and its counterparts, and some across it.
     for k in 0..3 {
@@ -47,7 +47,7 @@ fn d2_ray_in_the_plane_with_triangles_on_both_sides() {
 }
 
 #[test]
-fn d3_triangle_exactly_in_a_split_plane_is_found_from_either_side() {
+fn d03_triangle_exactly_in_a_split_plane_is_found_from_either_side() {
     let mut triangles = cube();
     let walls = triangles.len() as u32;
     for k in 0..3 {
@@ -66,7 +66,7 @@ fn d3_triangle_exactly_in_a_split_plane_is_found_from_either_side() {
 }
 
 #[test]
-fn d4_triangle_touching_the_plane_at_a_corner_or_an_edge() {
+fn d04_triangle_touching_the_plane_at_a_corner_or_an_edge() {
     let mut triangles = cube();
     let touching = triangles.len() as u32;
     for k in 0..3 {
@@ -91,7 +91,7 @@ fn d4_triangle_touching_the_plane_at_a_corner_or_an_edge() {
 }
 
 #[test]
-fn d5_origin_on_a_split_plane() {
+fn d05_origin_on_a_split_plane() {
     let mut rays = Vec::new();
     for k in 0..3 {
         for plane in PLANES {
@@ -105,7 +105,7 @@ fn d5_origin_on_a_split_plane() {
 }
 
 #[test]
-fn d6_zero_components_of_either_sign() {
+fn d06_zero_components_of_either_sign() {
     let mut rays = Vec::new();
     for k in 0..3 {
         for zero in [0.0, -0.0] {
@@ -125,7 +125,7 @@ fn d6_zero_components_of_either_sign() {
 }
 
 #[test]
-fn d7_subnormal_components() {
+fn d07_subnormal_components() {
     let mut rays = Vec::new();
     for k in 0..3 {
         for tiny in [1e-40, -1e-40, f32::from_bits(1), -f32::from_bits(1)] {
@@ -141,7 +141,7 @@ fn d7_subnormal_components() {
 }
 
 #[test]
-fn d8_distances_to_planes_that_overflow() {
+fn d08_distances_to_planes_that_overflow() {
     let mut rays = Vec::new();
     for k in 0..3 {
         for (tiny, away) in [(1e-30, 1e-10), (1e-38, 1.0), (-1e-30, -1e-10), (-1e-38, -1.0), (1e-38, -1.0)] {
@@ -155,7 +155,7 @@ fn d8_distances_to_planes_that_overflow() {
 }
 
 #[test]
-fn d9_plane_exactly_at_an_end_of_the_ray() {
+fn d09_plane_exactly_at_an_end_of_the_ray() {
     let mut triangles = cube();
     triangles.push([v(0.0, 0.0, 6.0), v(12.0, 0.0, 6.0), v(0.0, 12.0, 6.0)]);
     let wall = triangles.len() as u32 - 1;

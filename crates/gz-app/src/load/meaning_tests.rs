@@ -3,7 +3,7 @@
 use super::Overrides;
 use super::scratch::{CAMERA, COURSE_CAMERA, Folder, draft, draft_with, folder};
 use glam::DVec3;
-use gz_core::{CameraModel, GzColor, TriClass};
+use gz_core::{CameraModel, GzColor, LeavePolicy, TriClass};
 use gz_shade::{
     Antialias, Background, ColorCode, Eye, Falloff, Fresnel, GlassBlend, Interpolate, LightKind, MaterialKind, MirrorBlend,
     Procedural, SceneNeeds, ShadeRules, ShadowRule, Surface, Texture, TextureLookup,
@@ -65,11 +65,12 @@ fn overrides_win_over_the_scene() {
         depth: Some(7),
         aa: Some(Antialias::None),
         fresnel: Some(Fresnel::Schlick),
+        leave: Some(LeavePolicy::Bare),
     };
     let scene = draft_with(&toml, &overrides).scene;
     assert_eq!((scene.camera.width(), scene.camera.height(), scene.camera.model()), (30, 40, CameraModel::Paper));
     // The mode stays the one of the scene's own camera.
-    assert_eq!(scene.rules, ShadeRules { depth: 7, fresnel: Fresnel::Schlick, ..ShadeRules::PHYSICAL });
+    assert_eq!(scene.rules, ShadeRules { depth: 7, fresnel: Fresnel::Schlick, leave: LeavePolicy::Bare, ..ShadeRules::PHYSICAL });
 }
 
 #[test]

@@ -5,6 +5,7 @@
 //! a value, a file name without options.
 
 use super::obj::Materials;
+use super::surfaces::IORS;
 use super::text::{self, Lines, Tally, name, quoted, warning, words};
 use super::values::MAX_COLOR;
 use crate::error::LoadError;
@@ -186,7 +187,7 @@ fn in_range<'a>(key: &str, word: &'a [u8]) -> Result<&'a str, String> {
     let value = text::number(word, key)?;
     let word = std::str::from_utf8(word).unwrap_or_default();
     match key {
-        "Ni" if value <= 0.0 => Err(format!("Ni must be above 0, not {word}")),
+        "Ni" if !IORS.contains(&f64::from(value)) => Err(format!("Ni must be {} to {}, not {word}", IORS.start(), IORS.end())),
         _ if value < 0.0 => Err(format!("{key} must not be negative: {word}")),
         "Tf" if value > 1.0 => Err(format!("Tf must be at most 1, not {word}")),
         "Ka" | "Kd" | "Ks" if value > MAX_COLOR => Err(format!("{key} must be at most {MAX_COLOR}, not {word}")),

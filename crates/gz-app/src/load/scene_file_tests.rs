@@ -56,7 +56,7 @@ fn each_mistake_in_a_table_is_one_line_with_its_place() {
             "[[light]]\ndirection = [0, 1, 0]\nposition = [0, 1, 0]\ncolor = 1",
             "s.toml:6: a light has a direction or a position, not both",
         ),
-        ("[[material]]\nname = \"m\"\nkind = \"glass\"\nior = 0", "s.toml:7: ior must be above 0, not 0"),
+        ("[[material]]\nname = \"m\"\nkind = \"glass\"\nior = 0", "s.toml:7: ior must be 0.01 to 100, not 0"),
         ("[[material]]\nname = \"m\"\nior = 1.5", "s.toml:4: ior belongs to a material of kind mirror or glass"),
         ("[[material]]\nname = \"m\"\npower = -2", "s.toml:6: power must not be negative: -2"),
         ("[[texture]]\nname = \"t\"", "s.toml:4: a texture needs a file or a checker"),

@@ -5,7 +5,7 @@ use super::spot::SceneText;
 use super::words::{Mode, Word};
 use crate::error::LoadError;
 use glam::DVec3;
-use gz_core::{CameraError, CameraModel, CameraSpec, GzCamera, GzCoord, GzRay, View};
+use gz_core::{CameraError, CameraModel, CameraSpec, GzCamera, GzCoord, GzRay, LeavePolicy, View};
 use gz_shade::{Antialias, Fresnel, ShadeRules};
 use std::path::Path;
 use toml::Spanned;
@@ -24,6 +24,8 @@ pub struct Overrides {
     pub aa: Option<Antialias>,
     /// The reflected share at a boundary.
     pub fresnel: Option<Fresnel>,
+    /// Where shadow, mirror and glass rays start.
+    pub leave: Option<LeavePolicy>,
 }
 
 /// More bounces than this are refused: light is gone long before.
@@ -46,6 +48,9 @@ pub(super) struct Settings {
 }
 
 impl Overrides {
+    /// Nothing: the scene as it is.
+    pub const NONE: Self = Self { size: None, camera: None, depth: None, aa: None, fresnel: None, leave: None };
+
     /// `rules` as the command line wants them.
     ///
     /// # Errors
@@ -55,6 +60,7 @@ impl Overrides {
         rules.depth = self.depth.unwrap_or(rules.depth);
         rules.antialias = self.aa.unwrap_or(rules.antialias);
         rules.fresnel = self.fresnel.unwrap_or(rules.fresnel);
+        rules.leave = self.leave.unwrap_or(rules.leave);
         if rules.depth > MAX_DEPTH {
             return Err(LoadError::bad(path, None, format!("depth must be 0 to {MAX_DEPTH}, not {}", rules.depth)));
         }

@@ -14,6 +14,9 @@ use toml::Spanned;
 /// The index of refraction of glass that does not say.
 pub(super) const DEFAULT_IOR: f32 = 1.5;
 
+/// Indices of refraction that make sense; beyond them lie slips of the keyboard. The greatest known are below 50.
+pub(super) const IORS: std::ops::RangeInclusive<f64> = 0.01..=100.0;
+
 /// Materials and textures of a scene while it is read.
 #[derive(Debug)]
 pub(super) struct Palette {
@@ -200,9 +203,9 @@ fn material(
     let keys = material.get_ref();
     let ior = match &keys.ior {
         None => None,
-        Some(ior) if ior.get_ref().f32() > 0.0 => Some(ior.get_ref().f32()),
+        Some(ior) if IORS.contains(&ior.get_ref().0) => Some(ior.get_ref().f32()),
         Some(ior) => {
-            let message = format!("ior must be above 0, not {}", ior.get_ref().0);
+            let message = format!("ior must be {} to {}, not {}", IORS.start(), IORS.end(), ior.get_ref().0);
             return Err(finder.text.error(ior.span(), message));
         }
     };

@@ -166,6 +166,24 @@ fn comparing_ends_with_4_beyond_the_tolerance_and_draws_a_sheet() {
 }
 
 #[test]
+fn other_ways_to_leave_a_surface_are_for_comparison() {
+    let folder = Folder::with_scene("leave");
+    folder.done("render scene.toml -o a.ppm --size 24x16");
+    folder.done("render scene.toml -o exact.ppm --size 24x16 --leave exact --stats-json s.json");
+    folder.done("compare a.ppm exact.ppm");
+    let stats = std::fs::read_to_string(folder.path().join("s.json")).unwrap();
+    assert!(stats.contains("\"leave\": \"exact\""), "{stats}");
+    for policy in ["identity", "epsilon", "epsilon=0.001", "waechter-binder", "error-bound"] {
+        folder.done(&format!("render scene.toml -o b.ppm --size 24x16 --leave {policy}"));
+        assert_eq!(picture(&folder, "b.ppm").dimensions(), (24, 16));
+    }
+    // Half of the shadow rays that start at the bare f32 point meet the surface that they leave.
+    folder.done("render scene.toml -o b.ppm --size 24x16 --leave bare");
+    assert_eq!(folder.gz("compare a.ppm b.ppm").code, 4);
+    assert_eq!(folder.gz("render scene.toml -o b.ppm --leave always").code, 2);
+}
+
+#[test]
 fn the_tree_of_a_render_is_shown_on_request() {
     let folder = Folder::with_scene("tree");
     assert!(!folder.done("info scene.toml").out.contains("random lines"));

@@ -3,3 +3,5 @@
 mod bad_input;
 mod folder;
 mod good_input;
+mod query;
+mod words;

@@ -1,19 +1,24 @@
 //! Ray against triangle: a conservative filter, a certified f64 test, and an exact stage behind both.
 
 mod answer;
+mod baldwin_weber;
 mod bundle;
 mod certify;
 mod dyadic;
 mod exact;
 mod filter;
 mod group;
+mod moeller_trumbore;
 mod nearest;
 mod order;
+mod plain;
 mod plane;
+mod pluecker;
 mod quotient;
 mod solution;
 mod space;
 mod together;
+mod woop;
 
 pub use answer::hit_weights;
 pub use bundle::{BUNDLE, Each, LANES, PACKETS, RayBundle, Rays, Row, count, greatest, least};
@@ -22,7 +27,7 @@ pub use filter::FilterRay;
 pub use group::{Candidates, TriGroup};
 pub use nearest::Nearest;
 pub use order::{Closest, is_hit};
-pub(crate) use plane::plane_then_inside;
+pub use plain::plain;
 pub use space::FilterSpace;
 
 /// Which ray-triangle test answers a query.
@@ -31,6 +36,32 @@ pub enum Kernel {
     /// Exact: filter, certified f64 test, exact stage. The specification.
     #[default]
     Certified,
-    /// The paper's, in f32: plane first, then inside test. For lessons and comparison.
+    /// The paper's, in f32: plane first, then inside test. For lessons and comparison, as all that follow.
     Plane,
+    /// Möller and Trumbore's, in f32 and without a tolerance.
+    MoellerTrumbore,
+    /// The same in f64.
+    MoellerTrumboreF64,
+    /// Woop, Benthin and Wald's watertight one, in f32 with f64 where an edge function is 0.
+    Woop,
+    /// The same with fused multiply-adds, which cost it its property.
+    WoopFused,
+    /// By Plücker coordinates relative to the ray's origin, in f32.
+    Pluecker,
+    /// Baldwin and Weber's, one affine map a triangle, in f32.
+    BaldwinWeber,
+}
+
+impl Kernel {
+    /// All of them, the exact one first.
+    pub const ALL: [Self; 8] = [
+        Self::Certified,
+        Self::Plane,
+        Self::MoellerTrumbore,
+        Self::MoellerTrumboreF64,
+        Self::Woop,
+        Self::WoopFused,
+        Self::Pluecker,
+        Self::BaldwinWeber,
+    ];
 }

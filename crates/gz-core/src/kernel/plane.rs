@@ -7,7 +7,7 @@ use crate::{GzCoord, GzRay};
 /// With N the normal and D = -N.a the plane's offset, t = -(D + N.o) / (N.d); the point at t is inside when its three edge cross
 /// products point the way of N. Kept for comparison: rounding the point before the inside test lets rays slip between neighbours, so
 /// it differs from the exact kernel near edges and at small angles.
-pub(crate) fn plane_then_inside(ray: &GzRay, corners: &[GzCoord; 3]) -> Option<(f32, f32, f32)> {
+pub(super) fn plane_then_inside(ray: &GzRay, corners: &[GzCoord; 3]) -> Option<(f32, f32, f32)> {
     let [a, b, c] = *corners;
     let (o, d) = (ray.origin.as_vec3(), ray.direction);
     let n = (b - a).cross(c - a);

@@ -44,7 +44,7 @@ fn values_out_of_range_are_errors() {
     assert_eq!(error("newmtl a\nKd 0 x 0"), r#"dir/a.mtl:2: "x" is not a number"#);
     assert_eq!(error("newmtl a\nKd 0,5 0 0"), r#"dir/a.mtl:2: "0,5" is not a number: decimals need a point, not a comma"#);
     assert_eq!(error("newmtl a\n\nNs -1"), "dir/a.mtl:3: Ns must not be negative: -1");
-    assert_eq!(error("newmtl a\nNi 0"), "dir/a.mtl:2: Ni must be above 0, not 0");
+    assert_eq!(error("newmtl a\nNi 0"), "dir/a.mtl:2: Ni must be 0.01 to 100, not 0");
     assert_eq!(error("newmtl a\nTf -1 0 0"), "dir/a.mtl:2: Tf must not be negative: -1");
     assert_eq!(error("newmtl"), "dir/a.mtl:1: newmtl without a name");
 }

@@ -1,0 +1,102 @@
+//! The fuzz targets over their seeds: hard cases as bytes, random ones, and whatever once crashed.
+
+use gz_core::GzCoord;
+use gz_tests::fuzz::{build_tree, filter_soundness, trace};
+use gz_tests::hard::{Dice, meshes};
+use std::path::{Path, PathBuf};
+
+fn folder(target: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds").join(target)
+}
+
+fn run(target: &str, body: fn(&[u8])) {
+    let folder = folder(target);
+    let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("a readable folder").path()).collect();
+    files.sort();
+    assert!(files.len() >= 12, "{}: {} seeds", folder.display(), files.len());
+    for file in &files {
+        println!("{}", file.display()); // shown when the target panics
+        body(&std::fs::read(file).expect("a readable seed"));
+    }
+    // And random bytes of all lengths.
+    let mut dice = Dice::new(1);
+    for length in 0..400 {
+        let bytes: Vec<u8> = (0..length).map(|_| dice.bits() as u8).collect();
+        body(&bytes);
+    }
+}
+
+#[test]
+fn trace_holds() {
+    run("trace", trace);
+}
+
+#[test]
+fn filter_soundness_holds() {
+    run("filter_soundness", filter_soundness);
+}
+
+#[test]
+fn build_tree_holds() {
+    run("build_tree", build_tree);
+}
+
+fn raw(corners: &[[GzCoord; 3]]) -> Vec<u8> {
+    corners.iter().flatten().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect()
+}
+
+/// Triangles as the target `trace` reads them: their number, then corners that are not taken from before, then rays.
+fn traced(corners: &[[GzCoord; 3]], rays: &[u8]) -> Vec<u8> {
+    let mut bytes = vec![corners.len() as u8];
+    for corner in corners.iter().flatten() {
+        bytes.push(1);
+        bytes.extend(corner.to_array().into_iter().flat_map(f32::to_le_bytes));
+    }
+    bytes.extend(rays);
+    bytes
+}
+
+#[test]
+#[ignore = "writes the seeds"]
+fn write_seeds() {
+    let mut dice = Dice::new(2);
+    let write = |target: &str, name: &str, bytes: &[u8]| {
+        std::fs::create_dir_all(folder(target)).expect("the seeds can be written");
+        std::fs::write(folder(target).join(name), bytes).expect("the seeds can be written");
+    };
+    let v = GzCoord::new;
+    let mut scenes: Vec<(&str, Vec<[GzCoord; 3]>)> = vec![
+        ("zero_area", vec![[v(1.0, 1.0, 1.0); 3], [v(0.0, 0.0, 0.0), v(1.0, 1.0, 1.0), v(2.0, 2.0, 2.0)]]),
+        ("subnormal", vec![[v(1e-44, 0.0, 0.0), v(0.0, 1e-44, 0.0), v(0.0, 0.0, 1e-44)]; 3]),
+        ("huge", vec![[v(3e38, 3e38, 1.0), v(-3e38, 3e38, 1.0), v(0.0, -3e38, 1.0)]; 2]),
+        (
+            "not_finite",
+            vec![
+                [v(f32::NAN, 0.0, 0.0), v(f32::INFINITY, 0.0, 0.0), v(0.0, 1.0, 0.0)],
+                [v(0.0, 0.0, 1.0), v(1.0, 0.0, 1.0), v(0.0, 1.0, 1.0)],
+            ],
+        ),
+        ("fan", meshes::spindle(8).triangles()),
+        ("field", meshes::integer_field(&mut dice, 4).into_iter().take(60).collect()),
+        ("box", meshes::block(v(-1.0, -1.0, -1.0), v(1.0, 1.0, 1.0)).triangles()),
+    ];
+    scenes.push(("copies", vec![scenes[6].1[0]; 40]));
+    scenes.push(("soup", meshes::soup(&mut dice, 40, 0.5)));
+    scenes.push(("needles", meshes::needles(&mut dice, 1e6, gz_core::glam::DVec3::ONE).to_vec()));
+    for (name, triangles) in &scenes {
+        let rays: Vec<u8> = (0..400).map(|_| dice.bits() as u8).collect();
+        write("trace", name, &traced(triangles, &rays));
+        let mut built = vec![if *name == "copies" { 39 } else { 0 }, 1];
+        built.extend(raw(triangles));
+        write("build_tree", name, &built);
+    }
+    for k in 0..16 {
+        let bytes: Vec<u8> = (0..60 + 20 * k).map(|_| dice.bits() as u8).collect();
+        write("filter_soundness", &format!("random_{k:02}"), &bytes);
+        if k < 4 {
+            write("trace", &format!("random_{k:02}"), &bytes);
+            write("build_tree", &format!("random_{k:02}"), &bytes);
+        }
+    }
+}
