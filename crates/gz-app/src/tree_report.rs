@@ -227,7 +227,7 @@ mod tests {
             "  groups     2 of eight, 8.00 triangles in each\n",
             "leaves of 1 to 8 groups: 2, 0, 0, 0, 0, 0, 0, 0\n",
             "  listed     16 references, 1.000 a triangle\n",
-            "  bytes      54.0 a triangle: nodes 14.0, groups 40.0; beside them the triangle buffer, 36.0\n",
+            "  bytes      58.0 a triangle: nodes 14.0, groups 44.0; beside them the triangle buffer, 36.0\n",
             "  visits     of 10000 random lines through the scene's box (seed 1), ",
         ] {
             assert!(text.contains(line), "{line:?} is not in\n{text}");

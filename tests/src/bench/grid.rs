@@ -22,7 +22,7 @@ const ROUNDS: usize = 11;
 /// time of the self-tuned tree at the same moment, so that a busy machine does not decide.
 const HEATS: [(usize, f64); 3] = [(64, 8.0), (1024, 3.0), (4096, f64::INFINITY)];
 /// Seconds that a turn of the final may take: settings that are so slow meet fewer rays, evenly spaced.
-const TURN: f64 = 4.0;
+const TURN: f64 = 1.0;
 /// Settings that go to the final.
 const FINALISTS: usize = 4;
 /// Brute force checks so many triangle tests' worth of the rays; the rest is checked by the tree that brute force has checked.

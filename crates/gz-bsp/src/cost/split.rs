@@ -1,5 +1,8 @@
 //! Where to cut: the plane of least expected cost.
 
+// Lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
 use super::clip::Reference;
 use super::tight::TightBox;
 use gz_core::SimdLevel;
