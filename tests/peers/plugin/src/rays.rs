@@ -26,12 +26,7 @@ pub struct Scratch {
 
 impl Default for Scratch {
     fn default() -> Self {
-        Self {
-            origins: [DVec3::ZERO; BATCH],
-            directions: [GzCoord::ZERO; BATCH],
-            tmins: [0.0; BATCH],
-            tmaxs: [0.0; BATCH],
-        }
+        Self { origins: [DVec3::ZERO; BATCH], directions: [GzCoord::ZERO; BATCH], tmins: [0.0; BATCH], tmaxs: [0.0; BATCH] }
     }
 }
 
