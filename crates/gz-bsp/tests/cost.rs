@@ -252,3 +252,20 @@ fn a_scene_that_is_long_in_one_direction_is_not_walked_whole() {
     // Cuts across z do not help rays along z, but most of the tree is left out, and of what is asked almost nothing reaches f64.
     assert!(visits.groups < n * CostStats::of(&tree).groups as u64 / 10 && visits.tests < 4 * n, "{visits:?}");
 }
+
+#[test]
+fn an_origin_too_near_zero_is_refused_on_stretched_axes_too() {
+    // Along z the scene is the least float thin, so z is stretched.
+    let least = f32::from_bits(1);
+    let corners = [[-9.0, 0.0, -least], [9.0, 0.0, -least], [0.0, 0.0, least]].map(GzCoord::from_array);
+    let tris = buffer([corners, corners.map(|p| p + GzCoord::Y * 3e7)]);
+    let (tree, brute) = (BspTree::build(&tris), BruteForce::new(&tris));
+    for z in [4.8e-46, -4.8e-46] {
+        let down = |z| GzRay::from_f64(gz_core::glam::DVec3::new(0.1, 3.1e7, z), -GzCoord::Y);
+        assert!(!down(z).is_valid() && down(0.0).is_valid());
+        assert_eq!(tree.closest_hit(&down(z)), gz_core::Hit::MISS);
+        assert_eq!(brute.closest_hit(&down(z)), gz_core::Hit::MISS);
+        assert_eq!(tree.closest_hit(&down(0.0)), brute.closest_hit(&down(0.0)));
+        assert!(tree.closest_hit(&down(0.0)).is_hit() && tree.any_hit(&down(0.0)) && !tree.any_hit(&down(z)));
+    }
+}

@@ -183,11 +183,15 @@ impl RayBundle {
         fit & L::splat(1.0 / GREATEST_DIRECTION).at_most(largest)
     }
 
+    /// Rays with an origin so near 0 along an axis that f32 does not tell whether it is.
     #[inline(always)]
     fn tiny<L: Lanes<LANES>>(&self, p: usize) -> u32 {
-        let least = L::splat(f32::MIN_POSITIVE);
-        let [x, y, z] = [L::load(&self.origin[0][p]), L::load(&self.origin[1][p]), L::load(&self.origin[2][p])];
-        x.abs().below(least) | y.abs().below(least) | z.abs().below(least)
+        let mut tiny = 0;
+        for axis in 0..3 {
+            let least = L::splat(f32::MIN_POSITIVE * self.scale[axis]);
+            tiny |= L::load(&self.origin[axis][p]).abs().below(least);
+        }
+        tiny
     }
 
     /// Chooses the centre and forms what depends on it; only the rays of `fit` matter.
