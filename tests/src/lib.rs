@@ -14,3 +14,4 @@ pub mod needs_time;
 pub mod rendered;
 pub mod scenes;
 pub mod truth;
+pub mod verify;

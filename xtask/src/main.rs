@@ -42,8 +42,8 @@ const TASKS: [Task; 6] = [
     },
     Task {
         name: "verify",
-        takes: "homework [options]",
-        does: "compare with the course's reference pictures (needs GZ_HW_DATA)",
+        takes: "rays|scene NAME|FILE|all|builds|homework",
+        does: "hard rays and whole frames against an independent truth, builds against each other, pictures against the course's",
         run: verify::run,
     },
     Task {

@@ -1,5 +1,6 @@
 //! Inputs that are hard on the arithmetic: meshes, rays, and ways off a surface, all from a seed.
 
+pub mod classes;
 mod departures;
 pub mod dice;
 pub mod leaving;
