@@ -10,7 +10,7 @@
 use super::slabs::BundleSlabs;
 use super::walk::Stack;
 use super::wide::{BspTree, Child, Target, WideNode};
-use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, TriGroup, count, greatest, least};
+use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, Spans, TriGroup, count, greatest, least};
 use gz_core::simd::{Lanes, Simd};
 use gz_core::{RayBatch, Targets};
 
@@ -20,7 +20,7 @@ pub(super) trait BundleQuest<S: Simd> {
     const ORDERED: bool;
 
     /// Tests a group for the rays of `active`; returns those that need no more.
-    fn test(&mut self, group: &TriGroup, active: &Rays) -> Rays;
+    fn test(&mut self, group: &TriGroup, active: &Rays, spans: &Spans) -> Rays;
 
     /// The rays; where each ends is lowered as hits are found.
     fn bundle(&self) -> &RayBundle;
@@ -147,6 +147,7 @@ impl BspTree<'_> {
         let beam = Beam::of::<S>(quest.bundle(), slabs, near, company);
         let mut greatest_limit = greatest::<S>(&quest.bundle().limit, company);
         // Rays whose quest is not over, and those of them that cross the node.
+        let spans = Spans::of::<S>(quest.bundle(), company);
         let (mut live, mut active) = (*company, *company);
         queue.len = 0;
         let mut at = 0;
@@ -221,7 +222,7 @@ impl BspTree<'_> {
                     }
                     Target::Groups { first, count } => {
                         for group in &self.groups[first..first + count] {
-                            let over = quest.test(group, &active);
+                            let over = quest.test(group, &active, &spans);
                             if !Q::ORDERED {
                                 for p in 0..PACKETS {
                                     live[p] &= !over[p];
@@ -265,8 +266,8 @@ impl<S: Simd> BundleQuest<S> for ClosestOf<'_> {
     const ORDERED: bool = true;
 
     #[inline(always)]
-    fn test(&mut self, group: &TriGroup, active: &Rays) -> Rays {
-        self.bundle.closest::<S>(self.rays, group, active, self.targets);
+    fn test(&mut self, group: &TriGroup, active: &Rays, spans: &Spans) -> Rays {
+        self.bundle.closest::<S>(self.rays, group, active, spans, self.targets);
         [0; PACKETS]
     }
 
@@ -296,8 +297,8 @@ impl<S: Simd> BundleQuest<S> for AnyOf<'_> {
     const ORDERED: bool = false;
 
     #[inline(always)]
-    fn test(&mut self, group: &TriGroup, active: &Rays) -> Rays {
-        let hit = self.bundle.any::<S>(self.rays, group, active, self.targets);
+    fn test(&mut self, group: &TriGroup, active: &Rays, spans: &Spans) -> Rays {
+        let hit = self.bundle.any::<S>(self.rays, group, active, spans, self.targets);
         for p in 0..PACKETS {
             self.blocked[p] |= hit[p];
         }

@@ -59,6 +59,8 @@ pub struct RayBundle {
     lost: f32,
     /// All origins are the centre.
     pub(super) common_origin: bool,
+    /// All directions are equal.
+    pub(super) common_direction: bool,
     scale: [f32; 3],
     /// The first ray's number in its batch.
     from: usize,
@@ -84,6 +86,7 @@ impl RayBundle {
             margin: Margin::default(),
             lost: 0.0,
             common_origin: false,
+            common_direction: false,
             scale: [1.0; 3],
             from: 0,
         }
@@ -97,6 +100,7 @@ impl RayBundle {
         self.scale = space.scale.to_array();
         self.found = [0; PACKETS];
         self.common_origin = matches!(rays.origin, PerRay::One(_));
+        self.common_direction = matches!(rays.direction, PerRay::One(_));
         let mut fit = [0; PACKETS];
         let packets = len.div_ceil(LANES);
         let mut tiny = 0;
@@ -135,8 +139,11 @@ impl RayBundle {
                 }
             }
             PerRay::Each(all) => {
-                let points = padded(coordinates(&all[from..from + len]));
-                let [x, y, z] = <S::Sixteen>::unzip3(&points);
+                let all = coordinates(&all[from..from + len]);
+                let [x, y, z] = match all.first_chunk() {
+                    Some(points) => <S::Sixteen>::unzip3(points),
+                    None => <S::Sixteen>::unzip3(&padded(all)),
+                };
                 x.times(<S::Sixteen>::splat(scale.x)).store(&mut self.direction[0][p]);
                 y.times(<S::Sixteen>::splat(scale.y)).store(&mut self.direction[1][p]);
                 z.times(<S::Sixteen>::splat(scale.z)).store(&mut self.direction[2][p]);
@@ -156,8 +163,11 @@ impl RayBundle {
             PerRay::Each(all) => {
                 for half in 0..2 {
                     let first = (half * 8).min(len - 1);
-                    let points = padded(coordinates_f64(&all[from + first..from + len.min(first + 8)]));
-                    let points = <S::Doubles>::unzip3(&points);
+                    let eight = coordinates_f64(&all[from + first..from + len.min(first + 8)]);
+                    let points = match eight.first_chunk() {
+                        Some(points) => <S::Doubles>::unzip3(points),
+                        None => <S::Doubles>::unzip3(&padded(eight)),
+                    };
                     for axis in 0..3 {
                         *eight_mut(&mut self.exact_origin[axis][p], half) = points[axis].array();
                         let stretched = points[axis].times(<S::Doubles>::splat(f64::from(self.scale[axis])));
@@ -198,12 +208,17 @@ impl RayBundle {
     #[inline(always)]
     fn settle_down<S: Simd>(&mut self, fit: &Rays, packets: usize) {
         let zero = <S::Sixteen>::splat(0.0);
-        let (mut size, mut spread) = (zero, zero);
-        for p in 0..packets {
-            let d = self.packet_of::<S::Sixteen>(&self.direction, p);
-            size = size.max(d[0].abs().plus(d[1].abs()).plus(d[2].abs()).select(fit[p], zero));
+        let mut spread = zero;
+        // The greatest of each component rather than of their sums: that is what `spans.rs` needs.
+        let mut size = 0.0;
+        for d in &self.direction {
+            let mut greatest = zero;
+            for p in 0..packets {
+                greatest = greatest.max(<S::Sixteen>::load(&d[p]).abs().select(fit[p], zero));
+            }
+            size += greatest.greatest();
         }
-        let size = size.greatest() * (1.0 + f32::EPSILON);
+        let size = size * (1.0 + 2.0 * f32::EPSILON);
         let mut reach = 0.0f32;
         for axis in 0..3 {
             let [least, greatest] = match self.common_origin {
@@ -342,13 +357,11 @@ fn take(row: &mut Row, property: &PerRay<'_, f32>, from: usize, len: usize) {
     }
 }
 
-/// The points, the last one repeated where there are too few.
-#[inline(always)]
+/// The points, fewer than `N`, with the last one repeated.
+#[cold]
+#[inline(never)]
 fn padded<T: Copy, const N: usize>(points: &[T]) -> [T; N] {
-    match points.first_chunk() {
-        Some(all) => *all,
-        None => std::array::from_fn(|k| points[k.min(points.len() - 1)]),
-    }
+    std::array::from_fn(|k| points[k.min(points.len() - 1)])
 }
 
 /// The lower or upper eight.
