@@ -71,6 +71,9 @@ const FEW: u32 = 4;
 /// Rays go together when at the root they cross at least this share, in percent, of the cells that their interval crosses.
 const TOGETHER: u32 = 35;
 
+/// ... and when samples of them cross at least this share of the cells that any of the samples crosses.
+const ALIKE: u32 = 50;
+
 /// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
 struct Beam {
     near: [usize; 3],
@@ -144,6 +147,9 @@ impl BspTree<'_> {
         stack: &mut Stack,
         quest: &mut Q,
     ) -> bool {
+        if !self.seem_together::<S>(slabs, company, quest.bundle()) {
+            return false;
+        }
         let beam = Beam::of::<S>(quest.bundle(), slabs, near, company);
         let mut greatest_limit = greatest::<S>(&quest.bundle().limit, company);
         // Rays whose quest is not over, and those of them that cross the node.
@@ -242,6 +248,24 @@ impl BspTree<'_> {
                 }
             };
         }
+    }
+
+    /// Whether a ray of each packet crosses about the same of the root's cells as the others: measuring all of them costs more than it saves
+    /// where rays go everywhere.
+    #[inline(always)]
+    fn seem_together<S: Simd>(&self, slabs: &BundleSlabs, company: &Rays, bundle: &RayBundle) -> bool {
+        let (mut all, mut each, mut samples) = (0, 0, 0);
+        for p in 0..PACKETS {
+            if company[p] != 0 {
+                let lane = company[p].trailing_zeros() as usize % LANES;
+                let own = slabs.alone(p, lane, bundle.tmin[p][lane]);
+                let (_, crossed) = own.cross::<S::Eight>(&self.nodes[0], bundle.limit[p][lane]);
+                all |= crossed;
+                each += crossed.count_ones();
+                samples += 1;
+            }
+        }
+        each * 100 >= samples * all.count_ones() * ALIKE
     }
 
     /// Asks for what a walk will read next.

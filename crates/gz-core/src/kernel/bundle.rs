@@ -17,6 +17,9 @@ pub const PACKETS: usize = 4;
 /// Rays of a bundle.
 pub const BUNDLE: usize = LANES * PACKETS;
 
+/// All rays of a packet.
+const WHOLE: u32 = (1 << LANES) - 1;
+
 /// One number for each ray of a packet.
 pub type Row = [f32; LANES];
 /// One number for each ray.
@@ -329,12 +332,18 @@ fn drop_invalid(fit: &mut Rays, rays: &RayBatch<'_>, from: usize) {
     }
 }
 
+/// `x` where the bit is set, `other` elsewhere; as most sets are whole, that is looked at first.
+#[inline(always)]
+pub(super) fn some<L: Lanes<LANES>>(x: L, bits: u32, other: L) -> L {
+    if bits == WHOLE { x } else { x.select(bits, other) }
+}
+
 /// The least number of the rays in a set; infinite when it is empty.
 #[inline(always)]
 pub fn least<S: Simd>(each: &Each, rays: &Rays) -> f32 {
     let mut least = <S::Sixteen>::splat(f32::INFINITY);
     for p in 0..PACKETS {
-        least = <S::Sixteen>::load(&each[p]).select(rays[p], least).min(least);
+        least = some(<S::Sixteen>::load(&each[p]), rays[p], least).min(least);
     }
     least.least()
 }
@@ -344,7 +353,7 @@ pub fn least<S: Simd>(each: &Each, rays: &Rays) -> f32 {
 pub fn greatest<S: Simd>(each: &Each, rays: &Rays) -> f32 {
     let mut greatest = <S::Sixteen>::splat(f32::NEG_INFINITY);
     for p in 0..PACKETS {
-        greatest = <S::Sixteen>::load(&each[p]).select(rays[p], greatest).max(greatest);
+        greatest = some(<S::Sixteen>::load(&each[p]), rays[p], greatest).max(greatest);
     }
     greatest.greatest()
 }

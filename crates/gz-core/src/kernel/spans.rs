@@ -16,7 +16,7 @@
 // Axes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::bundle::{Each, PACKETS, RayBundle, Rays};
+use super::bundle::{Each, PACKETS, RayBundle, Rays, some};
 use crate::simd::{Lanes, Simd};
 
 const E: f32 = f32::EPSILON / 2.0;
@@ -90,8 +90,8 @@ fn span<S: Simd>(each: &Each, company: &Rays) -> Span {
     for p in 0..PACKETS {
         if company[p] != 0 {
             let x = <S::Sixteen>::load(&each[p]);
-            least = x.select(company[p], least).min(least);
-            greatest = x.select(company[p], greatest).max(greatest);
+            least = some(x, company[p], least).min(least);
+            greatest = some(x, company[p], greatest).max(greatest);
         }
     }
     Span::new(least.least(), greatest.greatest())

@@ -1,6 +1,8 @@
 //! Numbers side by side, and how a task gets the best form of them.
 
 use super::SimdLevel;
+use super::view::rows_of;
+use crate::Hit;
 
 /// `N` f32 numbers worked on together.
 ///
@@ -169,6 +171,18 @@ pub trait Simd {
         ]
     }
 
+    /// The lanes rounded to f32.
+    fn narrow(x: Self::Doubles) -> Self::Eight;
+
+    /// Writes hits from rows of their t, triangles (as numbers of equal bits), u and v.
+    #[inline(always)]
+    fn write_hits(rows: [Self::Eight; 4], hits: &mut [Hit; 8]) {
+        let rows = [rows[0].array(), rows[1].array(), rows[2].array(), rows[3].array()];
+        for (i, to) in rows_of(hits).iter_mut().enumerate() {
+            *to = [rows[0][i], rows[1][i], rows[2][i], rows[3][i]];
+        }
+    }
+
     /// Asks for the cache lines of `what` ahead of its use.
     fn prefetch<T>(what: &T);
 }
@@ -204,6 +218,11 @@ impl Simd for PortableSimd {
     #[inline(always)]
     fn widen(x: Portable) -> PortableDoubles {
         PortableDoubles(x.0.map(f64::from))
+    }
+
+    #[inline(always)]
+    fn narrow(x: PortableDoubles) -> Portable {
+        Portable(x.0.map(|x| x as f32))
     }
 
     #[inline(always)]

@@ -10,7 +10,7 @@ mod x86;
 pub use control::with_default_float_control;
 pub use lanes::{Doubles, EightDoubles, Lanes, Simd, Task, arrays3, dispatch, load3, splat3};
 use std::sync::OnceLock;
-pub use view::{coordinates, coordinates_f64, nine};
+pub use view::{coordinates, coordinates_f64, nine, numbers_of};
 
 /// A set of vector instructions that kernels are compiled for. Answers do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -3,6 +3,8 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::lanes::{Doubles, EightDoubles, Lanes, Pair, Simd, Task};
+use super::view::rows_of;
+use crate::Hit;
 use std::arch::x86_64::*;
 
 /// Calls an intrinsic on registers.
@@ -39,6 +41,17 @@ impl Simd for Avx2Simd {
     }
 
     #[inline(always)]
+    fn narrow(x: Avx2Doubles) -> Avx2 {
+        let (low, high) = (call!(_mm256_cvtpd_ps(x.0)), call!(_mm256_cvtpd_ps(x.1)));
+        Avx2(call!(_mm256_set_m128(high, low)))
+    }
+
+    #[inline(always)]
+    fn write_hits(rows: [Avx2; 4], hits: &mut [Hit; 8]) {
+        write_rows(rows, rows_of(hits));
+    }
+
+    #[inline(always)]
     fn corners(corners: &[&[f32; 9]; 8]) -> [Avx2; 9] {
         transpose(corners)
     }
@@ -60,6 +73,16 @@ impl Simd for Avx512Simd {
     }
 
     #[inline(always)]
+    fn narrow(x: Avx512Doubles) -> Avx2 {
+        Avx2(call!(_mm512_cvtpd_ps(x.0)))
+    }
+
+    #[inline(always)]
+    fn write_hits(rows: [Avx2; 4], hits: &mut [Hit; 8]) {
+        write_rows(rows, rows_of(hits));
+    }
+
+    #[inline(always)]
     fn corners(corners: &[&[f32; 9]; 8]) -> [Avx2; 9] {
         transpose(corners)
     }
@@ -76,6 +99,27 @@ fn prefetch<T>(what: &T) {
     for line in (0..size_of::<T>()).step_by(64) {
         // SAFETY: a prefetch reads nothing; the address is within `what`. SSE is part of x86-64.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line)) };
+    }
+}
+
+/// Four columns as rows of four.
+#[inline(always)]
+fn write_rows([a, b, c, d]: [Avx2; 4], to: &mut [[f32; 4]; 8]) {
+    // SAFETY: each row of `to` is written once, 16 bytes, unaligned; the features are there where the caller was reached.
+    unsafe {
+        let (ab, ab_high) = (_mm256_unpacklo_ps(a.0, b.0), _mm256_unpackhi_ps(a.0, b.0));
+        let (cd, cd_high) = (_mm256_unpacklo_ps(c.0, d.0), _mm256_unpackhi_ps(c.0, d.0));
+        // Row k beside row k + 4.
+        let rows = [
+            _mm256_shuffle_ps::<0x44>(ab, cd),
+            _mm256_shuffle_ps::<0xee>(ab, cd),
+            _mm256_shuffle_ps::<0x44>(ab_high, cd_high),
+            _mm256_shuffle_ps::<0xee>(ab_high, cd_high),
+        ];
+        for k in 0..4 {
+            _mm_storeu_ps(to[k].as_mut_ptr(), _mm256_castps256_ps128(rows[k]));
+            _mm_storeu_ps(to[k + 4].as_mut_ptr(), _mm256_extractf128_ps::<1>(rows[k]));
+        }
     }
 }
 
