@@ -72,7 +72,7 @@ const FEW: u32 = 4;
 const TOGETHER: u32 = 35;
 
 /// ... and when samples of them cross at least this share of the cells that any of the samples crosses.
-const ALIKE: u32 = 50;
+const ALIKE: u32 = 65;
 
 /// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
 struct Beam {
@@ -104,8 +104,8 @@ impl Beam {
         for axis in 0..3 {
             let [least, greatest, enter, leave] = self.span[axis];
             let (least, greatest) = (L::splat(least), L::splat(greatest));
-            let first = L::load(&node.planes[self.near[axis] & 7]);
-            let last = L::load(&node.planes[(self.near[axis] ^ 1) & 7]);
+            let [first, last] = node.ends(axis, self.near[axis]);
+            let (first, last) = (L::load(first), L::load(last));
             near = near.max(first.times(least).min(first.times(greatest)).minus(L::splat(enter)));
             far = far.min(last.times(least).max(last.times(greatest)).minus(L::splat(leave)));
         }
@@ -126,8 +126,8 @@ fn cross_one<L: Lanes<LANES>>(
     let (mut enter, mut leave) = (L::load(&bundle.tmin[p]), L::load(&bundle.limit[p]));
     for axis in 0..3 {
         let inverse = L::load(&slabs.inverse[axis][p]);
-        let first = L::splat(node.planes[beam.near[axis] & 7][slot]);
-        let last = L::splat(node.planes[(beam.near[axis] ^ 1) & 7][slot]);
+        let [first, last] = node.ends(axis, beam.near[axis]);
+        let (first, last) = (L::splat(first[slot]), L::splat(last[slot]));
         enter = enter.max(first.mul_sub(inverse, L::load(&slabs.enter[axis][p])));
         leave = leave.min(last.mul_sub(inverse, L::load(&slabs.leave[axis][p])));
     }

@@ -58,8 +58,8 @@ pub struct RayBundle {
     pub(super) found: Rays,
     pub(super) centre: [f32; 3],
     pub(super) margin: Margin,
-    /// At least the distance along an axis from a ray's origin to the rounded one.
-    lost: f32,
+    /// For a ray by itself, from its own origin, rounded.
+    alone: Margin,
     /// All origins are the centre.
     pub(super) common_origin: bool,
     /// All directions are equal.
@@ -87,7 +87,7 @@ impl RayBundle {
             found: [0; PACKETS],
             centre: [0.0; 3],
             margin: Margin::default(),
-            lost: 0.0,
+            alone: Margin::default(),
             common_origin: false,
             common_direction: false,
             scale: [1.0; 3],
@@ -232,9 +232,10 @@ impl RayBundle {
             reach = reach.max(least.abs()).max(greatest.abs());
         }
         // Half a unit in the last place, and what the least numbers lose.
-        self.lost = reach * f32::EPSILON + f32::MIN_POSITIVE;
+        let lost = reach * f32::EPSILON + f32::MIN_POSITIVE;
+        self.alone = Margin::new(size, 0.0, lost);
         if self.common_origin {
-            self.margin = Margin::new(size, 0.0, self.lost);
+            self.margin = self.alone;
             return;
         }
         for p in 0..packets {
@@ -271,7 +272,11 @@ impl RayBundle {
     #[inline(always)]
     pub fn filter_ray(&self, p: usize, lane: usize) -> FilterRay {
         let [o, d] = [&self.origin, &self.direction];
-        FilterRay::of([o[0][p][lane], o[1][p][lane], o[2][p][lane]], [d[0][p][lane], d[1][p][lane], d[2][p][lane]], self.lost)
+        FilterRay {
+            origin: [o[0][p][lane], o[1][p][lane], o[2][p][lane]],
+            direction: [d[0][p][lane], d[1][p][lane], d[2][p][lane]],
+            margin: self.alone,
+        }
     }
 
     /// The best hit so far of one ray.

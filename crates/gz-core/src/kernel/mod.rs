@@ -26,7 +26,7 @@ pub use bundle::{BUNDLE, Each, LANES, PACKETS, RayBundle, Rays, Row, count, grea
 pub(crate) use exact::side_sign;
 pub use filter::FilterRay;
 pub use group::{Candidates, TriGroup};
-pub use nearest::Nearest;
+pub use nearest::{Asked, Nearest};
 pub use order::{Closest, is_hit};
 pub use plain::plain;
 pub use space::FilterSpace;

@@ -5,6 +5,7 @@
 use super::bundle::{LANES, PACKETS, RayBundle, Rays};
 use super::filter::{Judged, distance, judge};
 use super::group::{TriGroup, cross, dot, minus3};
+use super::nearest::Asked;
 use super::order::is_hit;
 use super::spans::{BOUND, Spans};
 use crate::simd::{Lanes, Simd, arrays3, load3, splat3};
@@ -153,7 +154,7 @@ impl RayBundle {
     #[inline(always)]
     fn closest_alone<S: Simd>(&mut self, rays: &RayBatch<'_>, group: &TriGroup, p: usize, lane: usize, targets: &Targets<'_>) {
         let Some(found) = group.candidates::<S>(&self.filter_ray(p, lane)) else { return };
-        let ray = rays.ray(self.place(p, lane));
+        let (ray, tmin) = (Asked::new(rays, self.place(p, lane)), self.tmin[p][lane]);
         let mut best = self.nearest(p, lane);
         let mut possible = found.possible;
         while possible != 0 {
@@ -164,7 +165,7 @@ impl RayBundle {
                 break;
             }
             if targets.sees(tri) {
-                best.take(&ray, &found, k, tri, targets.positions());
+                best.take(ray, tmin, &found, k, tri, targets.positions());
             }
         }
         self.set_nearest(p, lane, best);
@@ -173,7 +174,7 @@ impl RayBundle {
     #[inline(always)]
     fn any_alone<S: Simd>(&self, rays: &RayBatch<'_>, group: &TriGroup, p: usize, lane: usize, targets: &Targets<'_>) -> bool {
         let Some(found) = group.candidates::<S>(&self.filter_ray(p, lane)) else { return false };
-        let ray = rays.ray(self.place(p, lane));
+        let (ray, ends) = (Asked::new(rays, self.place(p, lane)), [self.tmin[p][lane], self.limit[p][lane]]);
         let mut possible = found.possible;
         while possible != 0 {
             let k = possible.trailing_zeros() as usize;
@@ -182,7 +183,7 @@ impl RayBundle {
             if tri == NO_TRI {
                 break;
             }
-            if tri != self.tris[p][lane] && targets.sees(tri) && found.is_hit(k, &ray, targets.position(tri)) {
+            if tri != self.tris[p][lane] && targets.sees(tri) && found.is_hit(k, ray, ends, targets.position(tri)) {
                 return true;
             }
         }
