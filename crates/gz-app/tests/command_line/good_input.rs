@@ -45,7 +45,7 @@ fn threads_and_tiles_do_not_show_and_a_crop_is_that_part() {
 fn a_crop_is_that_part_in_every_view_of_every_camera() {
     let folder = Folder::with_scene("view-crop");
     for camera in ["pinhole", "homework", "paper", "screen"] {
-        for view in ["t", "id", "normal"] {
+        for view in ["t", "id", "normal", "visits --view-max 30", "tests --view-max 200", "cells"] {
             let options = format!("--camera {camera} --size 48x48 --view {view} --progress none");
             folder.done(&format!("render scene.toml -o whole.png {options}"));
             folder.done(&format!("render scene.toml -o part.png {options} --crop 18,20,30,41"));
@@ -104,6 +104,59 @@ fn views_differ_from_the_picture_and_from_each_other() {
     for (i, a) in files.iter().enumerate() {
         assert!(files[..i].iter().all(|b| a != b), "view {i}");
     }
+}
+
+#[test]
+fn heat_maps_tell_their_range_and_share_a_scale() {
+    let folder = Folder::with_scene("heat");
+    // `nodes and leaves entered: 3 to 71, mean 20.4; ...`
+    let most = |out: &str| -> u64 { out.split(" to ").nth(1).unwrap().split(',').next().unwrap().parse().unwrap() };
+    for (view, accel) in
+        [("visits", "--split sah"), ("visits", "--split midpoint"), ("tests", "--split sah"), ("tests", "--split midpoint")]
+    {
+        let line = format!("render scene.toml -o own.png --size 32x24 --progress none --view {view} {accel}");
+        let out = folder.done(&line).out;
+        let full = most(&out);
+        assert!(full > 0 && out.lines().count() == 1 && out.contains(&format!("to {full}, light yellow\n")), "{out}");
+        assert_eq!(out, folder.done(&format!("{line} --threads 1 --tile 5")).out);
+        // The same scale by its number is the same picture; a longer one is darker; a shorter one is told.
+        let same = folder.read("own.png");
+        folder.done(&format!("{line} --view-max {full}"));
+        assert!(folder.read("own.png") == same, "{line}");
+        folder.done(&format!("{line} --view-max {}", 4 * full));
+        let brightest = picture(&folder, "own.png").pixels().map(|p| p.0[0]).max().unwrap();
+        assert!(brightest < 128, "{line}: {brightest}");
+        assert!(folder.done(&format!("{line} --view-max 1")).out.contains(" pixels are above that\n"));
+    }
+    let log = folder.done("render scene.toml -o log.png --size 32x24 --view tests --view-max 576 --view-scale log").out;
+    assert!(log.contains("; colours by the logarithm from 0, dark blue, to 576"), "{log}");
+    // Every triangle for every ray: 64 segments^2 with the bottom.
+    let out = folder.done("render scene.toml -o brute.png --size 32x24 --accel brute --view tests").out;
+    assert!(out.starts_with("triangles looked at: 576 to 576, mean 576.00; colours from 0, dark blue, to 576"), "{out}");
+}
+
+#[test]
+fn cells_are_drawn_over_the_picture() {
+    let folder = Folder::with_scene("cells");
+    folder.done("render scene.toml -o plain.png --size 64x48");
+    let plain = picture(&folder, "plain.png");
+    // How many there are to draw: leaves as `gz info --tree` counts them, and levels of a binary tree.
+    for (accel, level, drawn) in [
+        ("--split midpoint --max-depth 3 --min-size 0", "", "8 leaves drawn\n"),
+        ("--split midpoint --max-depth 3 --min-size 0", "--view-level 1", "1 cells of level 1 and leaves above it drawn\n"),
+        ("--split midpoint --max-depth 3 --min-size 0", "--view-level 3", "4 cells of level 3 and leaves above it drawn\n"),
+        ("--split sah", "--view-level 1", "8 cells of level 1 and leaves above it drawn\n"),
+    ] {
+        let out = folder.done(&format!("render scene.toml -o cells.png --size 64x48 --view cells {accel} {level}")).out;
+        assert_eq!(out, drawn, "{accel} {level}");
+        let cells = picture(&folder, "cells.png");
+        let lighter = cells.pixels().zip(plain.pixels()).filter(|(a, b)| a.0.iter().zip(b.0).any(|(&a, b)| a > b)).count();
+        assert!((40..1500).contains(&lighter), "{accel} {level}: {lighter} pixels are lighter, under lines");
+    }
+    let tree = folder.done("info scene.toml --tree").out;
+    let out = folder.done("render scene.toml -o cells.png --size 64x48 --view cells").out;
+    let leaves = out.split(' ').next().unwrap();
+    assert!(tree.contains(&format!("  leaves     {leaves}, 0 empty")), "{out}{tree}");
 }
 
 #[test]
