@@ -11,6 +11,7 @@ pub mod judge;
 pub mod model;
 pub mod needs_scenes;
 pub mod needs_time;
+pub mod plain_trees;
 pub mod rendered;
 pub mod scenes;
 pub mod truth;
