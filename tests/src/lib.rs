@@ -3,6 +3,7 @@
 
 pub mod bench;
 pub mod counting;
+pub mod failures;
 pub mod folder;
 pub mod fuzz;
 pub mod hard;
@@ -16,3 +17,4 @@ pub mod rendered;
 pub mod scenes;
 pub mod truth;
 pub mod verify;
+pub mod z_buffer;
