@@ -15,6 +15,7 @@ mod plain;
 mod plane;
 mod pluecker;
 mod quotient;
+mod rung;
 mod solution;
 mod space;
 mod together;
@@ -28,6 +29,7 @@ pub use group::{Candidates, TriGroup};
 pub use nearest::Nearest;
 pub use order::{Closest, is_hit};
 pub use plain::plain;
+pub use rung::{Rung, rung};
 pub use space::FilterSpace;
 
 /// Which ray-triangle test answers a query.
