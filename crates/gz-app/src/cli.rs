@@ -182,6 +182,9 @@ pub struct PixelArgs {
     /// Ask this as well (brute: every triangle, exactly) and fail when the answers differ
     #[arg(long, value_name = "HOW", value_parser = args::accel)]
     pub compare: Option<AccelKind>,
+    /// Print all of it as JSON, numbers in full
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `gz query`.

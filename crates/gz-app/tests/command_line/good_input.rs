@@ -256,9 +256,61 @@ fn a_pixel_and_a_scene_are_explained() {
     for part in ["visited    ", " tests in f64", "ambient adds [", "light 0 adds [", "own colour ["] {
         assert!(out.contains(part), "{part} in {out}");
     }
+    for part in ["compare    brute has the same triangle, T, u and v, to the bit\n", "walk       ", ", of the pixel [1, 1, 1]\n"]
+    {
+        assert!(out.contains(part), "{part} in {out}");
+    }
     assert!(folder.done("pixel scene.toml 0 0 --size 32x24 --kernel plane --compare brute").out.contains("hit        nothing"));
     let out = folder.done("info scene.toml --size 32x24").out;
     assert!(out.contains("picture    32x24, camera pinhole\n") && out.contains("lights     1\n"), "{out}");
+}
+
+#[test]
+fn a_pixel_tells_its_walk_by_each_way_to_answer() {
+    let folder = Folder::with_scene("pixel-walk");
+    let told = |options: &str| folder.done(&format!("pixel scene.toml 16 14 --size 32x24 {options}")).out;
+    for options in ["", "--split midpoint", "--split midpoint --max-depth 2"] {
+        let out = told(options);
+        // The walk is told as it is counted.
+        let walk: Vec<&str> = out.lines().skip_while(|line| !line.starts_with("walk ")).skip(1).collect();
+        let steps = walk.iter().take_while(|line| line.starts_with("  ")).filter(|line| !line.starts_with("    "));
+        let (leaves, nodes): (Vec<&&str>, Vec<&&str>) = steps.partition(|line| line.starts_with("  leaf"));
+        assert!(out.contains(&format!("visited    {} nodes, {} leaves", nodes.len(), leaves.len())), "{options}: {out}");
+        // What is hit first was found on it, and the first rung differs: the paper's walk has no f32.
+        let hit = out.lines().find_map(|line| line.strip_prefix("hit        triangle ")).unwrap().split(' ').next().unwrap();
+        assert!(walk.iter().any(|line| line.starts_with(&format!("    triangle {hit} hit at T = "))), "{options}: {out}");
+        assert_eq!(out.contains("by f32"), options.is_empty(), "{options}: {out}");
+    }
+    let brute = told("--accel brute");
+    assert!(brute.contains("visited    576 triangles") && brute.contains("tested     ") && !brute.contains("walk "), "{brute}");
+    assert!(told("--kernel woop").contains(" missed\n    triangle "), "a rounded test proves nothing");
+}
+
+#[test]
+fn a_pixel_is_told_to_programs_too() {
+    let folder = Folder::with_scene("pixel-json");
+    let told = |options: &str| -> Value {
+        serde_json::from_str(&folder.done(&format!("pixel scene.toml 16 14 --size 32x24 --json {options}")).out).unwrap()
+    };
+    let (pixel, brute) = (told("--compare brute"), told("--accel brute"));
+    assert_eq!((&pixel["hit"], &pixel["compare"]["same_bits"]), (&brute["hit"], &Value::Bool(true)));
+    assert_eq!((&pixel["on_ray"], &pixel["color"], &pixel["bytes"]), (&brute["on_ray"], &brute["color"], &brute["bytes"]));
+    assert_eq!(pixel["on_ray"][0], pixel["hit"]);
+    let (walk, visits) = (pixel["walk"].as_array().unwrap(), &pixel["visits"]);
+    assert_eq!(walk.len() as u64, visits["nodes"].as_u64().unwrap() + visits["leaves"].as_u64().unwrap());
+    assert_eq!((brute["tested"].as_array().unwrap().len(), brute["walk"].as_array().unwrap().len()), (576, 0));
+    // One ray, its parts sum to its colour.
+    let node = &pixel["rays"][0];
+    assert_eq!(
+        (&node["kind"], &node["parent"], &node["share"]),
+        (&Value::from("primary"), &Value::Null, &serde_json::json!([1.0, 1.0, 1.0]))
+    );
+    let sum = |k: usize| node["ambient"][k].as_f64().unwrap() + node["lights"][0]["color"][k].as_f64().unwrap();
+    assert!((0..3).all(|k| (sum(k) - node["local"][k].as_f64().unwrap()).abs() < 1e-6), "{node}");
+    // The pixel that is written.
+    folder.done("render scene.toml -o a.png --size 32x24");
+    let pixel_written = picture(&folder, "a.png").get_pixel(16, 14).0;
+    assert_eq!(pixel["bytes"], serde_json::json!(pixel_written));
 }
 
 #[test]
