@@ -1,11 +1,12 @@
 //! Meshes and rays of the race, as files.
 
-use super::workshop::{Workshop, answers, peers, run};
+use super::workshop::{Workshop, peers};
+use crate::bench::indexed::Indexed;
 use crate::bench::scenes::scene_of;
+use crate::bench::tools::{answers, run};
 use gz_app::error::AppError;
 use gz_app::new_file::NewFile;
 use gz_core::{GzCoord, TriBuffer};
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -93,15 +94,7 @@ fn write_mesh(path: &Path, tris: &TriBuffer) -> Result<(), AppError> {
 }
 
 fn mesh_bytes(tris: &TriBuffer) -> Vec<u8> {
-    let (mut vertices, mut numbers) = (Vec::new(), HashMap::new());
-    let mut indices = Vec::with_capacity(3 * tris.len() + 6);
-    for corner in tris.positions().iter().flatten() {
-        let number = *numbers.entry(corner.to_array().map(f32::to_bits)).or_insert_with(|| {
-            vertices.push(*corner);
-            vertices.len() as u32 - 1
-        });
-        indices.push(number);
-    }
+    let Indexed { mut vertices, mut triangles } = Indexed::of(tris.positions());
     // The ground: level with the lowest point, its middle below the mesh's, each side four times the mesh's diagonal.
     let bounds = tris.bounds();
     let (middle, reach) = (bounds.centre(), 2.0 * bounds.size().length());
@@ -109,13 +102,13 @@ fn mesh_bytes(tris: &TriBuffer) -> Vec<u8> {
     for (x, z) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         vertices.push(GzCoord::new(middle.x + x * reach, bounds.min.y, middle.z + z * reach));
     }
-    indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
+    triangles.extend([[0, 1, 2], [0, 2, 3]].map(|corners| corners.map(|k| first + k)));
 
-    let counts = [vertices.len() as u32, indices.len() as u32 / 3];
+    let counts = [vertices.len() as u32, triangles.len() as u32];
     let mut bytes = b"TRIM".to_vec();
     bytes.extend(counts.iter().flat_map(|n| n.to_le_bytes()));
     bytes.extend(vertices.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
-    bytes.extend(indices.iter().flat_map(|k| k.to_le_bytes()));
+    bytes.extend(triangles.iter().flatten().flat_map(|k| k.to_le_bytes()));
     bytes
 }
 

@@ -6,12 +6,12 @@
 mod builds;
 mod meshes;
 mod options;
-mod record;
 mod traces;
 mod workshop;
 
 use gz_app::error::AppError;
 use meshes::Mesh;
+pub(super) use options::workshop_folder;
 use options::{MESHES, Options};
 use workshop::Workshop;
 

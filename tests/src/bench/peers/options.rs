@@ -14,6 +14,11 @@ const ROUNDS: usize = 7;
 /// More threads than this are not asked for.
 const MAX_THREADS: usize = 256;
 
+/// Where everything from outside is kept unless the options say otherwise.
+pub(in crate::bench) fn workshop_folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/peers")
+}
+
 /// What the bench was asked to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Options {
@@ -44,7 +49,7 @@ impl Options {
     /// [`AppError::Usage`] for a word that means nothing.
     pub(super) fn parse(words: &[String]) -> Result<Self, AppError> {
         let usage = |what: String| AppError::Usage(format!("{what}: use {USAGE}"));
-        let dir = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/peers");
+        let dir = workshop_folder();
         let (meshes, sets, threads) = (Vec::new(), Vec::new(), Vec::new());
         let mut options = Self { dir, meshes, sets, threads, rounds: ROUNDS, build: false, write: false };
         let mut words = words.iter();

@@ -2,8 +2,8 @@
 
 use super::meshes::{Mesh, rays};
 use super::options::Options;
-use super::record::Record;
-use super::workshop::Workshop;
+use super::workshop::{Workshop, settings};
+use crate::bench::record::Record;
 use crate::bench::table::lines;
 use crate::bench::timing::{Ratio, machine, median};
 use crate::row;
@@ -102,7 +102,7 @@ pub(super) fn run(workshop: &Workshop, options: &Options, meshes: &[Mesh]) -> Re
     }
     print_table(&heats);
     if options.write {
-        Record::new("peers", options.rounds)?
+        Record::new("peers", options.rounds, &settings())?
             .write(HEAD, heats.iter().flat_map(|heat| heat.laps.iter().map(|lap| cells(heat, lap))))?;
     }
     let mut robust = heats.iter().filter_map(|heat| Some((heat, heat.laps.iter().find(|lap| lap.name == ROBUST)?)));
