@@ -1,5 +1,6 @@
 //! Meshes and rays of the race, as files.
 
+use super::frame_rays;
 use super::workshop::{Workshop, peers};
 use crate::bench::indexed::Indexed;
 use crate::bench::scenes::scene_of;
@@ -56,14 +57,22 @@ pub(super) fn mesh(workshop: &Workshop, name: &str) -> Result<Mesh, AppError> {
 ///
 /// If it cannot be made.
 pub(super) fn rays(workshop: &Workshop, mesh: &Mesh, set: &str) -> Result<PathBuf, AppError> {
-    let path = workshop.file("rays", &format!("{}.{set}.rays", mesh.name));
-    if !path.exists() {
-        println!("making the rays of {}", mesh.name);
-        let guide = format!("{}:default", workshop.ours.display());
-        let mut command = Command::new(&workshop.race);
-        command.arg("rays").arg(&mesh.path).arg(workshop.file("rays", &mesh.name)).arg(guide);
-        run(&mut command, "making rays")?;
+    // Those of a picture have f64 origins.
+    let of_frame = frame_rays::SETS.contains(&set);
+    let file = |set: &str| workshop.file("rays", &format!("{}.{set}.rays{}", mesh.name, if of_frame { "64" } else { "" }));
+    let path = file(set);
+    if path.exists() {
+        return Ok(path);
     }
+    println!("making the rays of {}", mesh.name);
+    if of_frame {
+        frame_rays::make(mesh, file)?;
+        return Ok(path);
+    }
+    let guide = format!("{}:default", workshop.ours.display());
+    let mut command = Command::new(&workshop.race);
+    command.arg("rays").arg(&mesh.path).arg(workshop.file("rays", &mesh.name)).arg(guide);
+    run(&mut command, "making rays")?;
     Ok(path)
 }
 
@@ -93,7 +102,7 @@ fn write_mesh(path: &Path, tris: &TriBuffer) -> Result<(), AppError> {
     NewFile::at(path)?.write(&mesh_bytes(tris))
 }
 
-fn mesh_bytes(tris: &TriBuffer) -> Vec<u8> {
+pub(super) fn mesh_bytes(tris: &TriBuffer) -> Vec<u8> {
     let Indexed { mut vertices, mut triangles } = Indexed::of(tris.positions());
     // The ground: level with the lowest point, its middle below the mesh's, each side four times the mesh's diagonal.
     let bounds = tris.bounds();

@@ -4,8 +4,10 @@
 //! take turns. Here is what comes before, the workshop with its meshes, and what comes after, the tables.
 
 mod builds;
+mod frame_rays;
 mod meshes;
 mod options;
+mod scaling;
 mod traces;
 mod workshop;
 

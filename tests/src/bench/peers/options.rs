@@ -3,10 +3,10 @@
 use gz_app::error::AppError;
 use std::path::PathBuf;
 
-/// The sets of rays that a mesh has, as `harness/make_rays.hpp` makes them.
-pub(super) const SETS: [&str; 5] = ["primscan", "primtile", "shadow", "reflect", "random"];
+/// The sets of rays that a mesh has: five as `harness/make_rays.hpp` makes them, and the product's own.
+pub(super) const SETS: [&str; 7] = ["primscan", "primtile", "shadow", "reflect", "random", "frame-shadow", "frame-reflect"];
 /// Those that are raced unless the options say otherwise: all but the one that has the primary rays in another order.
-const RACED: [&str; 4] = ["primtile", "shadow", "reflect", "random"];
+const RACED: [&str; 6] = ["primtile", "shadow", "reflect", "random", "frame-shadow", "frame-reflect"];
 /// The meshes, unless the options say otherwise.
 pub(super) const MESHES: [&str; 4] = ["teapot1k", "teapot16k", "teapot260k", "dragon871k"];
 /// Rounds, unless the options say otherwise.
@@ -38,8 +38,8 @@ pub(super) struct Options {
     pub(super) write: bool,
 }
 
-const USAGE: &str = "bench peers [--mesh NAME|SCENE|FILE] [--set primscan|primtile|shadow|reflect|random] [--threads N] [--rounds N] \
-                     [--build] [--dir DIR] [--write]";
+const USAGE: &str = "bench peers [--mesh NAME|SCENE|FILE] [--set primscan|primtile|shadow|reflect|random|frame-shadow|frame-reflect] \
+                     [--threads N] [--rounds N] [--build] [--dir DIR] [--write]";
 
 impl Options {
     /// Reads the words. `--mesh`, `--set` and `--threads` may be repeated.
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!((&options.meshes[..], &options.sets[..]), (&["teapot:7".to_owned()][..], &["random".to_owned()][..]));
         assert_eq!(options.dir, PathBuf::from("x"));
         let plain = parse("").unwrap();
-        assert_eq!((plain.sets.len(), plain.meshes.len(), plain.threads.len()), (4, 0, 0));
+        assert_eq!((plain.sets.len(), plain.meshes.len(), plain.threads.len()), (6, 0, 0));
         assert!(plain.dir.ends_with("target/peers"));
     }
 
