@@ -155,7 +155,7 @@ unsafe fn closest<R: Given>(peer: *mut c_void, rays: *const R, n: usize, hits: *
     let (peer, rays, hits) = unsafe { (&*peer.cast::<Peer>(), slice(rays, n), slice_mut(hits, n)) };
     SCRATCH.with_borrow_mut(|scratch| {
         for (rays, hits) in rays.chunks(BATCH).zip(hits.chunks_mut(BATCH)) {
-            peer.tree.closest_hits(&scratch.batch(rays), ClassMask::ALL, hits);
+            peer.tree.closest_hits(&R::batch(scratch, rays), ClassMask::ALL, hits);
         }
     });
 }
@@ -171,7 +171,7 @@ unsafe fn any<R: Given>(peer: *mut c_void, rays: *const R, n: usize, occluded: *
     let occluded = unsafe { slice_mut(bytes.as_mut_ptr().cast::<bool>(), n) };
     SCRATCH.with_borrow_mut(|scratch| {
         for (rays, occluded) in rays.chunks(BATCH).zip(occluded.chunks_mut(BATCH)) {
-            peer.tree.any_hits(&scratch.batch(rays), ClassMask::ALL, occluded);
+            peer.tree.any_hits(&R::batch(scratch, rays), ClassMask::ALL, occluded);
         }
     });
 }

@@ -24,65 +24,32 @@ pub struct PeerRay64 {
     leaves: TriId,
 }
 
-/// What both have.
-pub trait Given {
-    /// Whether rays name the triangle that they leave.
-    const LEAVING: bool;
-
-    /// The origin; an f32 widens exactly.
-    fn origin(&self) -> DVec3;
-    /// The direction.
-    fn direction(&self) -> GzCoord;
-    /// Both ends of t.
-    fn ends(&self) -> (f32, f32);
-    /// The triangle that it leaves.
-    fn leaves(&self) -> TriId;
+/// Rays of either kind.
+pub trait Given: Copy {
+    /// The batch of `rays`, 1 to [`BATCH`].
+    fn batch<'s>(scratch: &'s mut Scratch, rays: &[Self]) -> RayBatch<'s>;
 }
 
 impl Given for PeerRay {
-    const LEAVING: bool = false;
-
-    #[inline(always)]
-    fn origin(&self) -> DVec3 {
-        let [x, y, z] = self.origin;
-        DVec3::new(x.into(), y.into(), z.into())
-    }
-    #[inline(always)]
-    fn direction(&self) -> GzCoord {
-        GzCoord::from_array(self.direction)
-    }
-    #[inline(always)]
-    fn ends(&self) -> (f32, f32) {
-        (self.tmin, self.tmax)
-    }
-    #[inline(always)]
-    fn leaves(&self) -> TriId {
-        NO_TRI
+    fn batch<'s>(scratch: &'s mut Scratch, rays: &[Self]) -> RayBatch<'s> {
+        scratch.batch(rays)
     }
 }
 
 impl Given for PeerRay64 {
-    const LEAVING: bool = true;
-
-    #[inline(always)]
-    fn origin(&self) -> DVec3 {
-        DVec3::from_array(self.origin)
-    }
-    #[inline(always)]
-    fn direction(&self) -> GzCoord {
-        GzCoord::from_array(self.direction)
-    }
-    #[inline(always)]
-    fn ends(&self) -> (f32, f32) {
-        (self.tmin, self.tmax)
-    }
-    #[inline(always)]
-    fn leaves(&self) -> TriId {
-        self.leaves
+    fn batch<'s>(scratch: &'s mut Scratch, rays: &[Self]) -> RayBatch<'s> {
+        scratch.batch64(rays)
     }
 }
 
-/// Rays in a batch: those of a tile of 16 by 16 pixels.
+impl PeerRay {
+    fn bits(&self) -> [u32; 8] {
+        let ([a, b, c], [d, e, f]) = (self.origin, self.direction);
+        [a, b, c, self.tmin, d, e, f, self.tmax].map(f32::to_bits)
+    }
+}
+
+/// Rays in a batch: those of a tile of `gz render`, 16 by 16 pixels.
 pub const BATCH: usize = 256;
 
 /// Room for the rays of one batch, property by property. Nothing in it outlives a batch but its memory.
@@ -108,33 +75,84 @@ impl Default for Scratch {
 
 impl Scratch {
     /// The batch of `rays`, 1 to [`BATCH`]. What they share is told once, as a camera, a directional light or an unbounded ray has it;
-    /// finding that out is part of the work that the bench times. A NaN never counts as shared.
-    pub fn batch<R: Given>(&mut self, rays: &[R]) -> RayBatch<'_> {
-        let first = &rays[0];
-        let ((o0, d0), ends0) = ((first.origin(), first.direction()), first.ends());
-        let (mut origin, mut direction, mut tmin, mut tmax) = (true, true, true, true);
-        let places = self.origins.iter_mut().zip(&mut self.directions).zip(self.tmins.iter_mut().zip(&mut self.tmaxs));
-        for ((ray, leaves), ((o, d), (t0, t1))) in rays.iter().zip(&mut self.leaves).zip(places) {
+    /// finding that out is part of the work that the bench times.
+    pub fn batch(&mut self, rays: &[PeerRay]) -> RayBatch<'_> {
+        let first = rays[0];
+        let mut other = [0; 8];
+        for ray in rays {
             ahead(ray);
-            (*o, *d) = (ray.origin(), ray.direction());
-            (*t0, *t1) = ray.ends();
-            origin &= (o.x == o0.x) & (o.y == o0.y) & (o.z == o0.z);
-            direction &= (d.x == d0.x) & (d.y == d0.y) & (d.z == d0.z);
-            tmin &= *t0 == ends0.0;
-            tmax &= *t1 == ends0.1;
-            if R::LEAVING {
-                *leaves = ray.leaves();
+            for ((other, bits), first) in other.iter_mut().zip(ray.bits()).zip(first.bits()) {
+                *other |= bits ^ first;
+            }
+        }
+        let [origin, tmin, direction, tmax] =
+            [&other[..3], &other[3..4], &other[4..7], &other[7..]].map(|bits| bits.iter().all(|&b| b == 0));
+        if origin {
+            self.origins[0] = DVec3::from_array(first.origin.map(f64::from));
+        } else {
+            for (ray, o) in rays.iter().zip(&mut self.origins) {
+                *o = DVec3::from_array(ray.origin.map(f64::from));
+            }
+        }
+        if direction {
+            self.directions[0] = GzCoord::from_array(first.direction);
+        } else {
+            for (ray, d) in rays.iter().zip(&mut self.directions) {
+                *d = GzCoord::from_array(ray.direction);
+            }
+        }
+        if !tmin || !tmax {
+            for (ray, (t0, t1)) in rays.iter().zip(self.tmins.iter_mut().zip(&mut self.tmaxs)) {
+                (*t0, *t1) = (ray.tmin, ray.tmax);
+            }
+        }
+        let n = rays.len();
+        RayBatch::new(
+            n,
+            if origin { PerRay::One(self.origins[0]) } else { PerRay::Each(&self.origins[..n]) },
+            if direction { PerRay::One(self.directions[0]) } else { PerRay::Each(&self.directions[..n]) },
+            if tmin { PerRay::One(first.tmin) } else { PerRay::Each(&self.tmins[..n]) },
+            if tmax { PerRay::One(first.tmax) } else { PerRay::Each(&self.tmaxs[..n]) },
+        )
+    }
+}
+
+impl Scratch {
+    /// The same for rays as the product has them. Their ends are told once where they are equal, and so is a direction; origins differ.
+    fn batch64(&mut self, rays: &[PeerRay64]) -> RayBatch<'_> {
+        let first = rays[0];
+        let bits = |ray: &PeerRay64| {
+            let [x, y, z] = ray.direction;
+            [ray.tmin, x, y, z, ray.tmax].map(f32::to_bits)
+        };
+        let mut other = [0; 5];
+        for ((ray, o), leaves) in rays.iter().zip(&mut self.origins).zip(&mut self.leaves) {
+            ahead(ray);
+            (*o, *leaves) = (DVec3::from_array(ray.origin), ray.leaves);
+            for ((other, bits), first) in other.iter_mut().zip(bits(ray)).zip(bits(&first)) {
+                *other |= bits ^ first;
+            }
+        }
+        let [tmin, direction, tmax] = [&other[..1], &other[1..4], &other[4..]].map(|bits| bits.iter().all(|&b| b == 0));
+        if !direction {
+            for (ray, d) in rays.iter().zip(&mut self.directions) {
+                *d = GzCoord::from_array(ray.direction);
+            }
+        }
+        if !tmin || !tmax {
+            for (ray, (t0, t1)) in rays.iter().zip(self.tmins.iter_mut().zip(&mut self.tmaxs)) {
+                (*t0, *t1) = (ray.tmin, ray.tmax);
             }
         }
         let n = rays.len();
         let batch = RayBatch::new(
             n,
-            if origin { PerRay::One(self.origins[0]) } else { PerRay::Each(&self.origins[..n]) },
-            if direction { PerRay::One(self.directions[0]) } else { PerRay::Each(&self.directions[..n]) },
-            if tmin { PerRay::One(ends0.0) } else { PerRay::Each(&self.tmins[..n]) },
-            if tmax { PerRay::One(ends0.1) } else { PerRay::Each(&self.tmaxs[..n]) },
+            PerRay::Each(&self.origins[..n]),
+            if direction { PerRay::One(GzCoord::from_array(first.direction)) } else { PerRay::Each(&self.directions[..n]) },
+            if tmin { PerRay::One(first.tmin) } else { PerRay::Each(&self.tmins[..n]) },
+            if tmax { PerRay::One(first.tmax) } else { PerRay::Each(&self.tmaxs[..n]) },
         );
-        if R::LEAVING { batch.leaving(&self.leaves[..n]) } else { batch }
+        batch.leaving(&self.leaves[..n])
     }
 }
 
