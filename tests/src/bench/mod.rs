@@ -12,6 +12,7 @@ pub mod grid;
 pub mod growth;
 pub mod indexed;
 pub mod memory;
+pub mod micro;
 pub mod options;
 pub mod paper;
 pub mod peers;
@@ -51,5 +52,6 @@ pub fn run(words: &[String]) -> Result<(), AppError> {
         Bench::Front => front::run(&options),
         Bench::Memory => memory::run(&options),
         Bench::Agree => agree::run(&options),
+        Bench::Micro => micro::run(&options),
     })
 }
