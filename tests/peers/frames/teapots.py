@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """The scene of teapots.toml in Mitsuba 3: teapots.py FOLDER THREADS SIDE DEPTH, where FOLDER holds matte.ply and glass.ply.
 
-Renders twice, writes FOLDER/mitsuba.png and prints the seconds of the second frame. Mitsuba has no Whitted integrator: `path` with lights
-that have no extent, to the same depth, asks for the same shadow rays, chooses reflection or refraction by chance at glass and at the
-floor, and follows one ray more from every diffuse hit. One sample a pixel.
+Renders twice, writes FOLDER/mitsuba.png and prints the seconds of the second frame. Mitsuba has no Whitted integrator: `path`, to the same
+depth and with one sample a pixel, asks for one shadow ray a hit, to a light taken by chance, takes reflection or refraction by chance at
+glass and at the floor, and follows one ray more from every diffuse hit. So its picture is noisier, and its rays are fewer.
 """
 import math
 import os

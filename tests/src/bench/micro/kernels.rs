@@ -1,110 +1,24 @@
-//! Single kernels and steps of the walk, in nanoseconds: `cargo xtask bench micro`.
-//!
-//! Of the kernels only what gz-core offers to a tree is used, and of the tree only its question; so the figures outlive what is inside.
-//! What stands beside is the test of Möller and Trumbore as anybody writes it, in f32 for one ray and one triangle.
+//! Kernels: groups of triangles with rays towards each, and pairs that meet.
 
-use super::options::Options;
-use super::rays::{RaySet, answers, differing, room, trace};
-use super::record::Record;
-use super::scenes::{BenchScene, bench_scene};
-use super::table::lines;
-use super::timing::{Ratio, median, take_turns};
-use crate::row;
+use super::Row;
+use crate::bench::timing::take_turns;
 use gz_app::error::AppError;
-use gz_bsp::{BspTree, VisitCount};
+use gz_bsp::BspTree;
 use gz_core::glam::DVec3;
 use gz_core::kernel::{BUNDLE, Closest, FilterRay, FilterSpace, RayBundle, TriGroup, hit_weights, is_hit, plain};
 use gz_core::simd::{Simd, Task, dispatch};
-use gz_core::{BruteForce, ClassMask, GzCoord, GzRay, Hit, Kernel, PerRay, RayBatch, RayQuery, SimdLevel, TriBuffer, TriId};
+use gz_core::{ClassMask, GzCoord, GzRay, Hit, Kernel, PerRay, RayBatch, RayQuery, SimdLevel, TriBuffer, TriId};
 use std::hint::black_box;
 
-/// The scene, unless the options name another: 16 thousand triangles.
-const SCENE: &str = "teapot:16";
-/// Rounds, unless the options say otherwise.
-const ROUNDS: usize = 15;
 /// Groups of eight triangles that the kernels are given, evenly spaced over the scene.
 const GROUPS: usize = 128;
 /// Pairs of a ray and a triangle that it hits.
 const PAIRS: usize = 4096;
-/// Rays of the walk, evenly spaced over the picture.
-const RAYS: usize = 1 << 16;
-/// Brute force checks so many of them.
-const CHECKED: usize = 4096;
 /// The eye, in sizes of a group.
 const AWAY: f32 = 3.0;
 
-/// `cargo xtask bench micro`: on one scene or those named.
-///
-/// # Errors
-///
-/// If a scene cannot be loaded or an answer is wrong.
-pub fn run(options: &Options) -> Result<(), AppError> {
-    let scenes = if options.scenes.is_empty() { vec![SCENE.to_owned()] } else { options.scenes.clone() };
-    let rounds = options.rounds.unwrap_or(ROUNDS);
-    let mut cells = Vec::new();
-    for name in &scenes {
-        let scene = bench_scene(name)?;
-        println!("\n{}: {} triangles; medians of {rounds} rounds in turns", scene.name, scene.tris.len());
-        let kernels = Kernels::of(&scene.tris);
-        kernels.check()?;
-        let walk = Walk::of(&scene, options.rays.unwrap_or(RAYS));
-        walk.check()?;
-        let mut rows = kernels.time(rounds);
-        rows.extend(walk.time(rounds));
-        print!("{}", table(&rows));
-        cells.extend(rows.iter().map(|row| row.cells(name)));
-    }
-    if options.write {
-        let levels = format!("SIMD level: {:?}", SimdLevel::best());
-        Record::new("micro", rounds, &[levels])?.write(HEAD, cells)?;
-    }
-    Ok(())
-}
-
-/// A line of the table.
-#[derive(Clone, Debug, PartialEq)]
-struct Row {
-    what: String,
-    /// What is counted.
-    unit: &'static str,
-    /// How many of them a round has.
-    count: f64,
-    /// Seconds of each round.
-    times: Vec<f64>,
-    /// Seconds of the plain test for as many pairs, where that is the same work.
-    plain: Vec<f64>,
-}
-
-/// Columns of the record.
-const HEAD: &str = "scene,what,unit,count,ns median,ns by round,plain f32 ns by round";
-
-impl Row {
-    fn each(&self, times: &[f64]) -> f64 {
-        median(times) * 1e9 / self.count
-    }
-
-    fn cells(&self, scene: &str) -> Vec<String> {
-        let all =
-            |times: &[f64]| times.iter().map(|time| format!("{:.3}", time * 1e9 / self.count)).collect::<Vec<_>>().join(" ");
-        let each = format!("{:.3}", self.each(&self.times));
-        row![scene, self.what, self.unit, self.count, each, all(&self.times), all(&self.plain)]
-    }
-}
-
-fn table(rows: &[Row]) -> String {
-    let mut lined = vec![row!["what", "ns", "a", "plain f32 takes [95% interval]"]];
-    lined.extend(rows.iter().map(|row| {
-        let ratio = match row.plain.is_empty() {
-            true => "-".to_owned(),
-            false => Ratio::of(&row.plain, &row.times).to_string(),
-        };
-        row![row.what, format!("{:.2}", row.each(&row.times)), row.unit, ratio]
-    }));
-    lines(&lined)
-}
-
 /// Groups of triangles with a bundle of rays towards each, and pairs that meet.
-struct Kernels<'t> {
+pub(super) struct Kernels<'t> {
     tris: &'t TriBuffer,
     space: FilterSpace,
     groups: Vec<TriGroup>,
@@ -118,7 +32,7 @@ struct Kernels<'t> {
 }
 
 impl<'t> Kernels<'t> {
-    fn of(tris: &'t TriBuffer) -> Self {
+    pub(super) fn of(tris: &'t TriBuffer) -> Self {
         let space = FilterSpace::new(tris.bounds().reaches());
         let mut this = Self {
             tris,
@@ -177,7 +91,7 @@ impl<'t> Kernels<'t> {
     }
 
     /// No kernel loses a hit, and none gives another answer than the exact one.
-    fn check(&self) -> Result<(), AppError> {
+    pub(super) fn check(&self) -> Result<(), AppError> {
         let (mut pairs, mut lost, mut other) = (0u64, 0u64, 0u64);
         for (k, group) in self.groups.iter().enumerate() {
             let survivors = self.survivors(k);
@@ -211,7 +125,7 @@ impl<'t> Kernels<'t> {
         found
     }
 
-    fn time(&self, rounds: usize) -> Vec<Row> {
+    pub(super) fn time(&self, rounds: usize) -> Vec<Row> {
         let level = SimdLevel::best();
         let rays = (self.groups.len() * BUNDLE) as f64;
         let trees: Vec<TriBuffer> = (0..self.groups.len()).filter_map(|k| self.mesh(&self.alone(k))).collect();
@@ -329,59 +243,10 @@ impl Task for Gather<'_> {
     }
 }
 
-/// The walk through the tree of a scene.
-struct Walk<'s> {
-    tris: &'s TriBuffer,
-    tree: BspTree<'s>,
-    rays: RaySet,
-}
-
-impl<'s> Walk<'s> {
-    fn of(scene: &'s BenchScene, most: usize) -> Self {
-        Self { tris: &scene.tris, tree: BspTree::build(&scene.tris), rays: scene.rays.primary().as_closest().sample(most) }
-    }
-
-    fn check(&self) -> Result<(), AppError> {
-        let few = self.rays.sample(CHECKED);
-        let wrong = differing(&answers(&BruteForce::new(self.tris), &few), &answers(&self.tree, &few));
-        println!("walk: {} rays checked by brute force, {wrong} differ", few.len());
-        if wrong > 0 { Err(AppError::Differs(format!("{wrong} answers differ from those of brute force"))) } else { Ok(()) }
-    }
-
-    fn time(&self, rounds: usize) -> Vec<Row> {
-        let rays: Vec<GzRay> = self.rays.rays().map(|(ray, _)| ray).collect();
-        let mut visits = VisitCount::default();
-        for ray in &rays {
-            black_box(self.tree.closest_hit_counted(ray, ClassMask::ALL, &mut visits));
-        }
-        let mut found = room(&self.rays);
-        let mut contenders: Vec<Box<dyn FnMut() + '_>> = vec![
-            Box::new(|| {
-                for ray in &rays {
-                    black_box(self.tree.closest_hit(ray));
-                }
-            }),
-            Box::new(|| trace(&self.tree, &self.rays, &mut found)),
-        ];
-        let times = take_turns(rounds, &mut contenders);
-        drop(contenders);
-        let count = rays.len() as f64;
-        let row =
-            |what: String, unit, count: f64, k: usize| Row { what, unit, count, times: times[k].clone(), plain: Vec::new() };
-        let per_ray = |n: u64| n as f64 / count.max(1.0);
-        let seen = format!("{:.1} nodes and {:.2} groups of 8", per_ray(visits.nodes), per_ray(visits.groups));
-        let steps = (visits.nodes + visits.groups) as f64;
-        vec![
-            row(format!("walk, primary rays one at a time: {seen}"), "ray", count, 0),
-            row("the same by node or group visited".to_owned(), "step", steps, 0),
-            row("walk, primary rays in batches".to_owned(), "ray", count, 1),
-        ]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::scenes::bench_scene;
 
     #[test]
     fn kernels_are_checked_before_they_are_timed() {
@@ -389,28 +254,9 @@ mod tests {
         let kernels = Kernels::of(&scene.tris);
         kernels.check().unwrap();
         assert!(kernels.groups.len() > 10 && kernels.pairs.len() > 100);
-        // Every pair meets, and most rays that should.
         assert!(kernels.pairs.iter().all(|(ray, tri)| is_hit(ray, scene.tris.position(*tri))));
         let rows = kernels.time(2);
         assert_eq!(rows.len(), 7);
         assert!(rows.iter().all(|row| row.times.len() == 2 && row.count > 0.0));
-        let walk = Walk::of(&scene, 500);
-        walk.check().unwrap();
-        assert_eq!(walk.time(2).len(), 3);
-    }
-
-    #[test]
-    fn the_ratio_stands_beside_what_does_the_same_work() {
-        let row = |what: &str, times: [f64; 2], plain: &[f64]| Row {
-            what: what.to_owned(),
-            unit: "pair",
-            count: 1000.0,
-            times: times.to_vec(),
-            plain: plain.to_vec(),
-        };
-        let rows = [row("plain", [4e-6, 4e-6], &[]), row("ours", [1e-6, 1e-6], &[4e-6, 4e-6])];
-        let text = table(&rows);
-        assert!(text.contains("4.00x [4.00, 4.00]") && text.contains("1.00  pair"), "{text}");
-        assert_eq!(rows[1].cells("s"), row!["s", "ours", "pair", 1000, "1.000", "1.000 1.000", "4.000 4.000"]);
     }
 }
