@@ -45,9 +45,8 @@ pub fn verify_rays(options: &RayOptions) -> Result<(), AppError> {
 
 /// Nothing wrong, and at most 1 in a million undecided, but for hits exactly on edges.
 fn is_clean((label, outcome): &(Label, Outcome)) -> bool {
-    let exact = outcome.exact();
     let decided = *label == Label::F5 || outcome.undecided * 1_000_000 <= outcome.cases;
-    exact.acne + exact.leaks + outcome.source_met == 0 && decided
+    outcome.is_clean() && decided
 }
 
 fn classes(options: &RayOptions) -> Result<Vec<Record>, AppError> {
