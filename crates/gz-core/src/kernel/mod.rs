@@ -17,6 +17,7 @@ mod pluecker;
 mod quotient;
 mod solution;
 mod space;
+mod spans;
 mod together;
 mod woop;
 
@@ -29,6 +30,7 @@ pub use nearest::Nearest;
 pub use order::{Closest, is_hit};
 pub use plain::plain;
 pub use space::FilterSpace;
+pub use spans::Spans;
 
 /// Which ray-triangle test answers a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
