@@ -16,7 +16,7 @@ use std::path::PathBuf;
 /// The sets.
 pub(super) const SETS: [&str; 2] = ["frame-shadow", "frame-reflect"];
 /// Pixels of a side, as of the other sets.
-const SIDE: u32 = 1024;
+pub(super) const SIDE: u32 = 1024;
 /// Side of a tile, as of `gz render`.
 const TILE: u32 = 64;
 /// An index with which a mirror takes about half of the light, so that shadow rays are asked too.
@@ -24,15 +24,15 @@ const HALF: f32 = 5.83;
 /// Brute force checks so many triangle tests' worth of the rays.
 const CHECKED_TESTS: f64 = 1e9;
 
-/// Writes both sets of `mesh`, `to` giving the file of each, after brute force has had a look at our answers to some of the rays.
+/// Writes both sets of `mesh` for a picture of this side, `to` giving the file of each, after brute force has had a look at our answers to some of the rays.
 ///
 /// # Errors
 ///
 /// If the mesh cannot be used, an answer differs or a file cannot be written.
-pub(super) fn make(mesh: &Mesh, to: impl Fn(&str) -> PathBuf) -> Result<(), AppError> {
+pub(super) fn make(mesh: &Mesh, side: u32, to: impl Fn(&str) -> PathBuf) -> Result<(), AppError> {
     let bytes = std::fs::read(&mesh.path).map_err(|error| AppError::Io(format!("{}: {error}", mesh.path.display())))?;
     let tris = read_mesh(&bytes).ok_or_else(|| AppError::Io(format!("{}: is no mesh file", mesh.path.display())))?;
-    let (scene, needs) = scene_of(tris)?;
+    let (scene, needs) = scene_of(tris, side)?;
     let tree = BspTree::build(&scene.tris);
     let rays = frame_rays(&scene, needs, &tree, TILE)?;
     let brute = BruteForce::new(&scene.tris);
@@ -84,7 +84,7 @@ fn up_axis(tris: &TriBuffer) -> usize {
 }
 
 /// The scene of a mesh whose last two triangles are its ground.
-fn scene_of(tris: TriBuffer) -> Result<(Scene, SceneNeeds), AppError> {
+fn scene_of(tris: TriBuffer, side: u32) -> Result<(Scene, SceneNeeds), AppError> {
     let up = up_axis(&tris);
     // A vector given as if z were up, as the harness turns it.
     let turned = |a: f64, b: f64, c: f64| match up {
@@ -99,7 +99,7 @@ fn scene_of(tris: TriBuffer) -> Result<(Scene, SceneNeeds), AppError> {
     let middle = (low + high) / 2.0;
     let position = middle + turned(0.55, -0.8, 0.42).normalize() * (0.85 * (high - low).length());
     let view = View { position, look_at: middle, up: turned(0.0, 0.0, 1.0), fov: 42.0 };
-    let spec = CameraSpec { model: CameraModel::Pinhole, view: Some(view), width: SIDE, height: SIDE };
+    let spec = CameraSpec { model: CameraModel::Pinhole, view: Some(view), width: side, height: side };
     let camera = GzCamera::new(spec).map_err(|error| AppError::Usage(format!("the camera of a mesh: {error}")))?;
     let light = turned(0.45, -0.35, 0.8).normalize();
     let mirror =
@@ -145,11 +145,11 @@ mod tests {
         std::fs::create_dir_all(&folder).unwrap();
         let mesh = Mesh { name: "m".to_owned(), path: folder.join("m.trim"), triangles: 4 };
         std::fs::write(&mesh.path, file()).unwrap();
-        make(&mesh, |set| folder.join(set)).unwrap();
+        make(&mesh, 64, |set| folder.join(set)).unwrap();
         let files: Vec<Vec<u8>> = SETS.iter().map(|set| std::fs::read(folder.join(set)).unwrap()).collect();
         let counts: Vec<usize> = files.iter().map(|bytes| bytes.len() / 48).collect();
         std::fs::remove_dir_all(&folder).unwrap();
-        assert!(counts[0] > 100_000 && counts[1] > 100_000, "{counts:?}");
+        assert!(counts[0] > 500 && counts[1] > 500, "{counts:?}");
         for bytes in files {
             let leaves = |ray: &[u8]| u32::from_le_bytes([ray[44], ray[45], ray[46], ray[47]]);
             assert!(bytes.chunks_exact(48).all(|ray| leaves(ray) < 4));

@@ -66,7 +66,7 @@ pub(super) fn rays(workshop: &Workshop, mesh: &Mesh, set: &str) -> Result<PathBu
     }
     println!("making the rays of {}", mesh.name);
     if of_frame {
-        frame_rays::make(mesh, file)?;
+        frame_rays::make(mesh, frame_rays::SIDE, file)?;
         return Ok(path);
     }
     let guide = format!("{}:default", workshop.ours.display());
