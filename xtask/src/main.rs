@@ -8,6 +8,7 @@ mod ci;
 mod golden;
 mod measure;
 mod render;
+mod report;
 mod verify;
 
 use std::path::PathBuf;
@@ -27,7 +28,7 @@ struct Failure {
     code: u8,
 }
 
-const TASKS: [Task; 6] = [
+const TASKS: [Task; 7] = [
     Task {
         name: "render",
         takes: "[NAME|FILE|all] [gz options]",
@@ -57,6 +58,12 @@ const TASKS: [Task; 6] = [
         takes: "paper|grid|brute|scale|front|memory|agree|peers",
         does: "measure: the paper's tables, the best of its trees, plain C, growth, others (see docs/BENCH.md)",
         run: bench::run,
+    },
+    Task {
+        name: "report",
+        takes: "[--quick|--full] [--check]",
+        does: "speed against error, in one page: docs/report/index.html (see docs/REPORT.md)",
+        run: report::run,
     },
     Task { name: "ci", takes: "", does: "format, clippy, docs and tests: what has to pass before a push", run: ci::run },
 ];

@@ -1,0 +1,227 @@
+//! What follows from the rows, in words made from them.
+
+use super::chart::escape;
+use super::page::Filled;
+use super::table::{Table, grouped, short};
+
+/// A finding.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// Its name in files.
+    pub id: &'static str,
+    /// The question that it answers.
+    pub question: &'static str,
+    /// The figure that says most, as HTML.
+    pub big: String,
+    /// The answer, as HTML.
+    pub headline: String,
+    /// What it rests on, as HTML.
+    pub text: String,
+    /// All numbers in it.
+    pub numbers: Vec<Number>,
+}
+
+/// A number of a finding.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// What it is.
+    pub name: String,
+    /// The number.
+    pub value: f64,
+    /// The cells that it is made from.
+    pub from: String,
+}
+
+/// Collects the numbers of a finding as they are said.
+#[derive(Default)]
+pub(super) struct Numbers(Vec<Number>);
+
+impl Numbers {
+    /// A number as it stands in the text, with `unit` behind it.
+    pub(super) fn say(&mut self, name: &str, value: f64, from: &str, unit: &str) -> String {
+        self.0.push(Number { name: name.to_owned(), value, from: from.to_owned() });
+        format!("<data value=\"{value}\">{}{}</data>", short(value), escape(unit))
+    }
+
+    /// A whole number.
+    pub(super) fn count(&mut self, name: &str, value: f64, from: &str) -> String {
+        self.0.push(Number { name: name.to_owned(), value, from: from.to_owned() });
+        format!("<data value=\"{value}\">{}</data>", grouped(value))
+    }
+
+    /// The numbers said.
+    pub(super) fn taken(self) -> Vec<Number> {
+        self.0
+    }
+}
+
+/// The rows of a section.
+pub(super) fn table_of<'f>(sections: &'f [Filled], id: &str) -> Option<&'f Table> {
+    sections.iter().find(|it| it.section.id == id).map(|it| &it.table)
+}
+
+/// The findings that these sections lead to: as many of them as have their rows.
+pub(super) fn all(sections: &[Filled]) -> Vec<Finding> {
+    let accuracy = table_of(sections, "kernels").and_then(accuracy);
+    let setting = table_of(sections, "tree").and_then(setting);
+    let paper = match (table_of(sections, "kernels"), table_of(sections, "leaving"), table_of(sections, "tree")) {
+        (Some(kernels), Some(leaving), Some(tree)) => paper(kernels, leaving, tree),
+        _ => None,
+    };
+    [accuracy, setting, paper].into_iter().flatten().collect()
+}
+
+/// `a` times as long, or the other way round.
+fn times_as_long(numbers: &mut Numbers, name: &str, ratio: f64, from: &str) -> String {
+    if ratio >= 1.0 {
+        format!("{} times as long", numbers.say(name, ratio, from, ""))
+    } else {
+        format!("{} of the time", numbers.say(name, 100.0 * ratio, from, " %"))
+    }
+}
+
+/// What accuracy costs.
+fn accuracy(table: &Table) -> Option<Finding> {
+    let mut numbers = Numbers::default();
+    let of = |row: usize, name: &str| table.number(row, name);
+    let (plane, scalar) = (table.row("test", "plane")?, table.row("test", "ours, Portable")?);
+    let best = table.row("test", "ours, by the tree")?.checked_sub(1)?;
+    // The most accurate and the fastest of those that round.
+    let rounding: Vec<usize> = (0..table.rows.len()).filter(|&row| !table.words(row, "test").starts_with("ours")).collect();
+    let by = |name: &str| {
+        rounding
+            .iter()
+            .copied()
+            .filter(|&row| of(row, name).is_some())
+            .min_by(|&a, &b| of(a, name).partial_cmp(&of(b, name)).unwrap_or(std::cmp::Ordering::Equal))
+    };
+    let (finest, fastest) = (by("wrong_per_1e9")?, by("ns_per_ray")?);
+    let ours_wrong: f64 = (0..table.rows.len()).filter(|row| !rounding.contains(row)).filter_map(|row| of(row, "wrong")).sum();
+    let n = table.rows[best].n as f64;
+    let ratio = of(best, "ns_per_ray")? / of(fastest, "ns_per_ray")?;
+    let portable = of(scalar, "ns_per_ray")? / of(plane, "ns_per_ray")?;
+    let big = times_as_long(&mut numbers, "ours over fastest", ratio, "kernels: ns_per_ray");
+    let headline = match (ours_wrong == 0.0, ratio < 1.0) {
+        (true, true) => "Being right every time costs nothing: the exact test is the fastest",
+        (true, false) => "Being right every time has a price, and this is it",
+        (false, _) => "The exact test was wrong somewhere: that is a bug",
+    };
+    let wrong_of = |row: usize| of(row, "wrong_per_1e9").unwrap_or(f64::NAN) / 1e9;
+    let text = format!(
+        "The filter in f32 only has to reject, so it may be coarse and eight lanes wide; the exact arithmetic sees the few triangles that are \
+         left. Brute force so takes {} as the fastest test that rounds ({}), and {} as the paper's even without vector instructions of this \
+         processor. In {} hard rays it was wrong {} times. The fastest test is wrong on {} of them, and the best of those that round ({}) \
+         still on one in {}.",
+        times_as_long(&mut numbers, "ours over fastest", ratio, "kernels: ns_per_ray"),
+        escape(table.words(fastest, "test")),
+        times_as_long(&mut numbers, "portable over plane", portable, "kernels: ns_per_ray"),
+        numbers.count("hard rays", n, "kernels: n"),
+        numbers.count("ours wrong", ours_wrong, "kernels: wrong"),
+        numbers.say("fastest wrong", 100.0 * wrong_of(fastest), "kernels: wrong_per_1e9", " %"),
+        escape(table.words(finest, "test")),
+        numbers.count("finest one in", 1.0 / wrong_of(finest).max(1.0 / n), "kernels: wrong_per_1e9"),
+    );
+    Some(Finding {
+        id: "accuracy",
+        question: "What does accuracy cost?",
+        big,
+        headline: headline.to_owned(),
+        text,
+        numbers: numbers.taken(),
+    })
+}
+
+/// Which setting to choose.
+fn setting(table: &Table) -> Option<Finding> {
+    let mut numbers = Numbers::default();
+    let of = |row: usize, name: &str| table.number(row, name);
+    let (best, tuned) = (super::sections::fastest(table)?, table.row("tree", "self-tuned")?);
+    let (paper, plain) = (table.row("tree", "(15, 5)")?, table.row("tree", "plain brute force")?);
+    let ratio = of(best, "trace_ms")? / of(tuned, "trace_ms")?;
+    let fewer = of(tuned, "tests_per_ray")? / of(best, "tests_per_ray")?;
+    let memory = of(best, "kb")? / of(tuned, "kb")?;
+    let plus = of(plain, "trace_ms")? / of(tuned, "trace_ms")?;
+    let big = match ratio >= 1.0 {
+        true => format!("{} times faster", numbers.say("tuned over best", ratio, "tree: trace_ms", "")),
+        false => format!("{} the speed", numbers.say("tuned over best", 100.0 * ratio, "tree: trace_ms", " %")),
+    };
+    let headline = match ratio > 1.0 {
+        true => "Choose no setting: the tree that tunes itself beats the whole grid",
+        false => "Set MAX_DEPTH and MIN_SIZE by hand: the best of the grid beats the tree that tunes itself",
+    };
+    let walk = match fewer > 1.0 {
+        true => format!(
+            "It looks at {} times as many triangles a ray, eight at a time, so its planes do not explain that: the walk, which takes 64 rays \
+             along and filters groups of eight, does.",
+            numbers.say("triangles", fewer, "tree: tests_per_ray", "")
+        ),
+        false => format!(
+            "It looks at {} of the triangles a ray.",
+            numbers.say("triangles", 100.0 * fewer, "tree: tests_per_ray", " %")
+        ),
+    };
+    let same_best = if best == paper {
+        ", the paper's own choice".to_owned()
+    } else {
+        format!("; the paper's (15, 5) takes {} ms", numbers.say("paper's", of(paper, "trace_ms")?, "tree: trace_ms", ""))
+    };
+    let text = format!(
+        "The fastest of 36 settings on the paper's scene is {} with {} ms{same_best}. The tree that tunes itself takes {} ms with {} of its \
+         memory, {} times as fast as the paper's brute force. {walk} By hand: let MAX_DEPTH be 12 or more, then keep MIN_SIZE small.",
+        escape(table.words(best, "tree")),
+        numbers.say("best", of(best, "trace_ms")?, "tree: trace_ms", ""),
+        numbers.say("tuned", of(tuned, "trace_ms")?, "tree: trace_ms", ""),
+        numbers.say("memory", 100.0 / memory, "tree: kb", " %"),
+        numbers.say("over plain", plus, "tree: trace_ms", ""),
+    );
+    Some(Finding {
+        id: "setting",
+        question: "Which setting?",
+        big,
+        headline: headline.to_owned(),
+        text,
+        numbers: numbers.taken(),
+    })
+}
+
+/// Where the paper's choices lie.
+fn paper(kernels: &Table, leaving: &Table, tree: &Table) -> Option<Finding> {
+    let mut numbers = Numbers::default();
+    let rate = |name: &str| kernels.number(kernels.row("test", name)?, "wrong_per_1e9");
+    let rounding: Vec<f64> =
+        kernels.labels().iter().filter(|name| !name.starts_with("ours")).filter_map(|name| rate(name)).collect();
+    let plane = rate("plane")?;
+    let place = rounding.iter().filter(|rate| **rate < plane).count() + 1;
+    let acne = |name: &str| leaving.number(leaving.row("policy", name)?, "wrong_per_1e6");
+    let (identity, bare) = (acne("identity")?, acne("bare")?);
+    let alike = super::sections::agreement(tree);
+    let best = super::sections::fastest(tree)?;
+    let (fifteen, time) = (tree.row("tree", "(15, 5)")?, |row: usize| tree.number(row, "trace_ms"));
+    let behind = time(fifteen)? / time(best)?;
+    let big = format!("{} of hard rays", numbers.say("plane wrong", plane / 1e7, "kernels: wrong_per_1e9", " %"));
+    let verdict_tree = match (alike > 0.8, behind < 1.25) {
+        (true, true) => "Its tree was well chosen",
+        (true, false) => "Its tables were right about what matters",
+        _ => "Its tree's tables do not carry over to this machine",
+    };
+    let headline = format!("{verdict_tree}; its test and its cure for stipple were not");
+    let text = format!(
+        "The paper's test gives a wrong answer on so many hard rays, the {} of {} tests that round. Skipping the own triangle takes {} of the \
+         wrong shadow answers of the bare hit point down to {} in a million hard cases, and not to none: neighbours in the same plane still \
+         shadow each other. Its speed-ups hold: its eleven settings rank here as they did there (coefficient {}), and its fastest, (15, 5), \
+         takes {} times as long as the best of the grid.",
+        nth(place),
+        rounding.len(),
+        numbers.say("bare", bare, "leaving: wrong_per_1e6", ""),
+        numbers.say("identity", identity, "leaving: wrong_per_1e6", ""),
+        numbers.say("rank", alike, "tree: paper_speedup, speedup", ""),
+        numbers.say("behind", behind, "tree: trace_ms", ""),
+    );
+    Some(Finding { id: "paper", question: "Where do the paper's choices lie?", big, headline, text, numbers: numbers.taken() })
+}
+
+/// `best`, `second best` and so on.
+fn nth(place: usize) -> String {
+    const WORDS: [&str; 7] = ["best", "second best", "third best", "fourth best", "fifth best", "sixth best", "seventh best"];
+    WORDS.get(place.saturating_sub(1)).map_or_else(|| format!("number {place}"), |word| (*word).to_owned())
+}
