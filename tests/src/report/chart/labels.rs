@@ -28,7 +28,7 @@ impl Rect {
 /// Height of a line of words.
 const HEIGHT: f64 = 13.0;
 /// Width of an average character.
-const WIDTH: f64 = 6.4;
+const WIDTH: f64 = 7.6;
 /// Half of what a point covers.
 const POINT: f64 = 6.0;
 

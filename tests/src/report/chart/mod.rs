@@ -45,7 +45,12 @@ fn points(spec: &ChartSpec, table: &Table) -> (String, Legend) {
     let mut marks = Vec::new();
     for row in rows(spec, table) {
         let (Some(px), Some(py)) = (table.number(row, x.column), table.number(row, y.column)) else { continue };
-        let name = if series.is_empty() { table.label(row) } else { word(table, row, series) };
+        // Without series and labels there is one thing alone to be seen, and it is ours.
+        let name = match (series, label) {
+            ("", "") => "ours".to_owned(),
+            ("", _) => table.label(row),
+            _ => word(table, row, series),
+        };
         let number = names.iter().position(|known| *known == name).unwrap_or_else(|| {
             names.push(name.clone());
             names.len() - 1

@@ -170,11 +170,13 @@ fn says(table: &Table) -> String {
     } else {
         format!("The buffers cover the same pixels but for {}", numbers.count("alone", alone, "alone"))
     };
+    let other = match of(t, "other") {
+        0.0 => "name the same triangle on every one".to_owned(),
+        other => format!("name another triangle on {} of them, along edges", numbers.count("other", other, "other")),
+    };
     format!(
-        "{same}, {} in all; on {} of them they name another triangle, along edges and where two lie at one depth. A ray can then be sent on \
-         from each, which a scan converter cannot do.",
+        "{same}, {} in all, and {other}. A ray can then be sent on from each, which a scan converter cannot do.",
         numbers.count("covered", of(t, "covered"), "covered"),
-        numbers.count("other", of(t, "other"), "other"),
     )
 }
 

@@ -51,7 +51,7 @@ fn pairs() -> [Pair; 4] {
             scene: "teapot",
             sides: [
                 (one, "1 sample. One ray a pixel leaves stairs and noise in the glass."),
-                (Overrides { aa: Some(Antialias::Samples(16)), ..one }, "16 samples. Sixteen rays smooth both."),
+                (Overrides { aa: Some(Antialias::Samples(8)), ..one }, "8 samples. Eight rays smooth both."),
             ],
             gain: 2.0,
         },
@@ -92,7 +92,7 @@ fn pairs() -> [Pair; 4] {
 }
 
 fn measure(run: &Run) -> Result<Measured, AppError> {
-    let size = run.size((16, 12), (360, 270), (480, 360));
+    let size = run.size((16, 12), (320, 240), (480, 360));
     let mut measured = Measured::default();
     for Pair { name, scene, sides, gain } in pairs() {
         run.progress.say(&format!("  differences: {name}"));

@@ -41,7 +41,7 @@ pub(in crate::report) const SECTION: Section = Section {
 const PICTURES: [(&str, u32, u32, &str); 7] = [
     (
         "teapot",
-        720,
+        640,
         800,
         "The default scene. Porcelain, glass, a mirror and a stone floor, each ray's front-most triangle found exactly.",
     ),

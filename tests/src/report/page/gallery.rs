@@ -55,7 +55,8 @@ fn pair(before: &Picture, after: &Picture, difference: Option<&Picture>) -> Stri
         None => slider,
     };
     let of_difference = difference.map_or_else(String::new, |it| format!(" {}", escape(&it.caption)));
-    format!("<figure class=\"triple\">{shown}<figcaption>{told} {more}{of_difference}</figcaption></figure>\n")
+    let two = if difference.is_some() { "" } else { " two" };
+    format!("<figure class=\"triple{two}\">{shown}<figcaption>{told} {more}{of_difference}</figcaption></figure>\n")
 }
 
 /// The first sentence of a caption and the rest, escaped.

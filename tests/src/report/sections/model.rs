@@ -27,7 +27,7 @@ const COLUMNS: [Column; 9] = [
 const CHARTS: [ChartSpec; 1] = [ChartSpec {
     title: "Time saved against error",
     caption: "To the right and down is better. Cutting bounces saves time where there is glass to bounce in, and it shows: a ray that is \
-              cut inside glass ends in black. Schlick's formula saves next to nothing, as the time goes into finding hits.",
+              cut inside glass ends in black. A formula for a formula changes little of either, as the time goes into finding hits.",
     only: ("", ""),
     drawn: Drawn::Points {
         x: Axis { column: "saved", title: "time saved, % →", scale: Scale::Linear },
@@ -70,7 +70,7 @@ fn scene_with(name: &str, size: &Overrides, (fresnel, depth): (Fresnel, u32)) ->
 }
 
 fn measure(run: &Run) -> Result<Measured, AppError> {
-    let (width, height) = run.size((16, 12), (160, 120), (640, 480));
+    let (width, height) = run.size((16, 12), (112, 84), (640, 480));
     let size = sized(width, height);
     let settings = format!("{}; {width}x{height}, one sample a pixel; {} rounds, 1 thread", run.mode.name(), run.rounds());
     let mut rows = Vec::new();

@@ -23,28 +23,28 @@ const X: Axis = Axis { column: "triangles", title: "triangles →", scale: Scale
 const CHARTS: [ChartSpec; 2] = [
     ChartSpec {
         title: "Time of a primary ray",
-        caption: "Two hundred times the triangles cost a ray little more: what a ray passes grows with the logarithm at most. Brute force \
-                  would grow as fast as the axis.",
+        caption: "Brute force would rise as steeply as the axis runs: a decade for a decade. What a ray passes on its way through a tree \
+                  grows far slower; what rises here beyond that are triangles that no longer fit into the caches.",
         only: ("", ""),
         drawn: Drawn::Points {
             x: X,
             y: Axis { column: "ns_per_ray", title: "↑ ns per primary ray", scale: Scale::Log },
             series: "",
             label: "",
-            joined: false,
+            joined: true,
             zeros: "",
         },
     },
     ChartSpec {
         title: "Time to build",
-        caption: "A little more than proportional to the triangles, as sorting is.",
+        caption: "What sorts its triangles takes a little more than proportional time: a decade and a bit for a decade.",
         only: ("", ""),
         drawn: Drawn::Points {
             x: X,
             y: Axis { column: "build_one", title: "↑ seconds to build, one thread", scale: Scale::Log },
             series: "",
             label: "",
-            joined: false,
+            joined: true,
             zeros: "",
         },
     },

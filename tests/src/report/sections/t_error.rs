@@ -171,21 +171,28 @@ fn measure(run: &Run, places: &[f64], make: fn(&mut Dice, f64) -> ([DVec3; 3], D
 fn says(table: &Table) -> String {
     let mut numbers = Numbers::default();
     let rows_of = |test: &'static str| (0..table.rows.len()).filter(move |&row| table.words(row, "test") == test);
-    let Some(last) = rows_of("plane").last() else { return String::new() };
+    let Some(last) = rows_of("plane").next_back() else { return String::new() };
     let p99 = |row: usize| table.number(row, "p99").unwrap_or(f64::NAN);
     let place = table.words(last, "place");
-    let at_end = |test: &'static str| rows_of(test).last().map_or(f64::NAN, p99);
+    let at_end = |test: &'static str| rows_of(test).next_back().map_or(f64::NAN, p99);
     let ours: f64 = rows_of("ours").filter_map(|row| table.number(row, "worst")).fold(0.0, f64::max);
     let exact = if ours == 0.0 {
         "Ours is the rounded exact T in every case, which is 0 ulp by construction and by this count.".to_owned()
     } else {
         format!("Ours is off by up to {} ulp: that is a bug.", numbers.say("ours", ours, "worst", ""))
     };
+    let missed = table.number(last, "missed").unwrap_or(f64::NAN);
+    let found = if missed > 1.0 {
+        format!(", of the hits that it finds at all: it misses {}", numbers.say("missed", missed, "missed", " %"))
+    } else {
+        String::new()
+    };
     format!(
-        "At {place} the paper's T is off by {} ulp for one hit in a hundred, Möller and Trumbore's by {}, Woop's by {}. {exact}",
-        numbers.say("plane", at_end("plane"), "p99", ""),
-        numbers.say("mt", at_end("moeller-trumbore"), "p99", ""),
-        numbers.say("woop", at_end("woop"), "p99", ""),
+        "At {place} the paper's T is off by {} ulp or more for one hit in a hundred{found}. Möller and Trumbore's is off by {}, Woop's by {}. \
+         {exact}",
+        numbers.count("plane", at_end("plane"), "p99"),
+        numbers.count("mt", at_end("moeller-trumbore"), "p99"),
+        numbers.count("woop", at_end("woop"), "p99"),
     )
 }
 

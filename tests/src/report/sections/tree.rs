@@ -204,7 +204,7 @@ fn times(tris: &TriBuffer, rays: &RaySet, tests: &[f64], budget: f64, rounds: us
 fn measure(run: &Run) -> Result<Measured, AppError> {
     let scene = bench_scene(PAPER)?;
     let (tris, all) = (&scene.tris, scene.rays.as_closest());
-    let rays = all.sample(run.size(300, 50_000, usize::MAX));
+    let rays = all.sample(run.size(300, 30_000, usize::MAX));
     let truth = answers(&BruteForce::new(tris), &rays);
     let mut found =
         settings().into_par_iter().map(|setting| counts(tris, &rays, &truth, setting)).collect::<Result<Vec<_>, _>>()?;
@@ -214,7 +214,7 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
     let every = brute_tests(tris.len(), &all);
     // A test of the filter costs an eighth or less of a plain one.
     let tests: Vec<f64> = [every, every / 8.0].into_iter().chain(found.iter().map(|counts| counts.tests)).collect();
-    let budget = run.size(2e4, 2.5e6, 2e7);
+    let budget = run.size(2e4, 1.5e6, 2e7);
     let times = gz_app::threads::with(1, || times(tris, &all, &tests, budget, run.rounds()))?;
     let plain_time = times[0].1;
     let settings_text = format!(
