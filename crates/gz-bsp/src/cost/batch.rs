@@ -7,7 +7,7 @@ use super::together::{AnyOf, ClosestOf, Queue};
 use super::walk::{Blocked, NearestOf, Stack};
 use super::wide::{BspTree, Child};
 use crate::Visits;
-use gz_core::kernel::{BUNDLE, LANES, Nearest, PACKETS, RayBundle, Rays, count};
+use gz_core::kernel::{Asked, BUNDLE, LANES, Nearest, PACKETS, RayBundle, Rays, count};
 use gz_core::simd::{Simd, Task, dispatch};
 use gz_core::{ClassMask, GzRay, Hit, PerRay, RayBatch, RayQuery, Targets, TriBuffer, with_default_float_control};
 
@@ -227,7 +227,8 @@ impl BspTree<'_> {
         for (lane, hit) in hits.iter_mut().enumerate().filter(|(lane, _)| fit[lane / LANES] >> (lane % LANES) & 1 == 0) {
             let ray = rays.ray(from + lane);
             if ray.is_valid() {
-                let mut quest = NearestOf { ray, targets, best: Nearest::before(&ray, rays.left_by(from + lane)) };
+                let best = Nearest::before(&ray, rays.left_by(from + lane));
+                let mut quest = NearestOf { ray: Asked::new(rays, from + lane), tmin: ray.tmin, targets, best };
                 self.send_far(&ray, &mut quest, visits);
                 *hit = quest.best.hit(&ray, targets.positions());
             }
@@ -249,7 +250,8 @@ impl BspTree<'_> {
         for (lane, occluded) in occluded.iter_mut().enumerate().filter(|(lane, _)| fit[lane / LANES] >> (lane % LANES) & 1 == 0) {
             let ray = rays.ray(from + lane);
             if ray.is_valid() {
-                let mut quest = Blocked { ray, targets, leaves: rays.left_by(from + lane), found: false };
+                let (asked, leaves) = (Asked::new(rays, from + lane), rays.left_by(from + lane));
+                let mut quest = Blocked { ray: asked, ends: [ray.tmin, ray.tmax], targets, leaves, found: false };
                 self.send_far(&ray, &mut quest, visits);
                 *occluded = quest.found;
             }

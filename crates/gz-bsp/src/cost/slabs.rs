@@ -83,19 +83,24 @@ impl BundleSlabs {
         company
     }
 
-    /// Index into a node's planes of the end where a ray enters, by axis.
+    /// The end of a node's cells where a ray enters, by axis: 0 is the lower one.
     #[inline(always)]
     pub(super) fn near(&self, p: usize, lane: usize) -> [usize; 3] {
-        let of = |axis: usize| 2 * axis + (self.down[axis][p] >> lane & 1) as usize;
-        [of(0), of(1), of(2)]
+        let [x, y, z] = [self.down[0][p], self.down[1][p], self.down[2][p]];
+        [(x >> lane & 1) as usize, (y >> lane & 1) as usize, (z >> lane & 1) as usize]
     }
 
     /// One ray by itself.
     #[inline(always)]
     pub(super) fn alone(&self, p: usize, lane: usize, tmin: f32) -> Slabs {
-        let of = |rows: &[Each; 3]| [rows[0][p][lane], rows[1][p][lane], rows[2][p][lane]];
-        Slabs { near: self.near(p, lane), inverse: of(&self.inverse), enter: of(&self.enter), leave: of(&self.leave), tmin }
+        let (inverse, enter, leave) = (of_ray(&self.inverse, p, lane), of_ray(&self.enter, p, lane), of_ray(&self.leave, p, lane));
+        Slabs { near: self.near(p, lane), inverse, enter, leave, tmin }
     }
+}
+
+#[inline(always)]
+fn of_ray(rows: &[Each; 3], p: usize, lane: usize) -> [f32; 3] {
+    [rows[0][p][lane], rows[1][p][lane], rows[2][p][lane]]
 }
 
 /// The same of one ray.
@@ -114,9 +119,9 @@ impl Slabs {
         let (mut near, mut far) = (L::splat(self.tmin), L::splat(limit));
         for axis in 0..3 {
             let inverse = L::splat(self.inverse[axis]);
-            let first = self.near[axis] & 7;
-            near = near.max(L::load(&node.planes[first]).mul_sub(inverse, L::splat(self.enter[axis])));
-            far = far.min(L::load(&node.planes[first ^ 1]).mul_sub(inverse, L::splat(self.leave[axis])));
+            let [first, last] = node.ends(axis, self.near[axis]);
+            near = near.max(L::load(first).mul_sub(inverse, L::splat(self.enter[axis])));
+            far = far.min(L::load(last).mul_sub(inverse, L::splat(self.leave[axis])));
         }
         (near, near.at_most(far))
     }

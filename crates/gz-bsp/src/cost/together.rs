@@ -10,7 +10,7 @@
 use super::slabs::BundleSlabs;
 use super::walk::Stack;
 use super::wide::{BspTree, Child, Target, WideNode};
-use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, TriGroup, count, greatest, least};
+use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, Spans, TriGroup, count, greatest, least};
 use gz_core::simd::{Lanes, Simd};
 use gz_core::{RayBatch, Targets};
 
@@ -20,7 +20,7 @@ pub(super) trait BundleQuest<S: Simd> {
     const ORDERED: bool;
 
     /// Tests a group for the rays of `active`; returns those that need no more.
-    fn test(&mut self, group: &TriGroup, active: &Rays) -> Rays;
+    fn test(&mut self, group: &TriGroup, active: &Rays, spans: &Spans) -> Rays;
 
     /// The rays; where each ends is lowered as hits are found.
     fn bundle(&self) -> &RayBundle;
@@ -71,6 +71,9 @@ const FEW: u32 = 4;
 /// Rays go together when at the root they cross at least this share, in percent, of the cells that their interval crosses.
 const TOGETHER: u32 = 35;
 
+/// ... and when samples of them cross at least this share of the cells that any of the samples crosses.
+const ALIKE: u32 = 65;
+
 /// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
 struct Beam {
     near: [usize; 3],
@@ -101,8 +104,8 @@ impl Beam {
         for axis in 0..3 {
             let [least, greatest, enter, leave] = self.span[axis];
             let (least, greatest) = (L::splat(least), L::splat(greatest));
-            let first = L::load(&node.planes[self.near[axis] & 7]);
-            let last = L::load(&node.planes[(self.near[axis] ^ 1) & 7]);
+            let [first, last] = node.ends(axis, self.near[axis]);
+            let (first, last) = (L::load(first), L::load(last));
             near = near.max(first.times(least).min(first.times(greatest)).minus(L::splat(enter)));
             far = far.min(last.times(least).max(last.times(greatest)).minus(L::splat(leave)));
         }
@@ -123,8 +126,8 @@ fn cross_one<L: Lanes<LANES>>(
     let (mut enter, mut leave) = (L::load(&bundle.tmin[p]), L::load(&bundle.limit[p]));
     for axis in 0..3 {
         let inverse = L::load(&slabs.inverse[axis][p]);
-        let first = L::splat(node.planes[beam.near[axis] & 7][slot]);
-        let last = L::splat(node.planes[(beam.near[axis] ^ 1) & 7][slot]);
+        let [first, last] = node.ends(axis, beam.near[axis]);
+        let (first, last) = (L::splat(first[slot]), L::splat(last[slot]));
         enter = enter.max(first.mul_sub(inverse, L::load(&slabs.enter[axis][p])));
         leave = leave.min(last.mul_sub(inverse, L::load(&slabs.leave[axis][p])));
     }
@@ -144,9 +147,13 @@ impl BspTree<'_> {
         stack: &mut Stack,
         quest: &mut Q,
     ) -> bool {
+        if !self.seem_together::<S>(slabs, company, quest.bundle()) {
+            return false;
+        }
         let beam = Beam::of::<S>(quest.bundle(), slabs, near, company);
         let mut greatest_limit = greatest::<S>(&quest.bundle().limit, company);
         // Rays whose quest is not over, and those of them that cross the node.
+        let spans = Spans::of::<S>(quest.bundle(), company);
         let (mut live, mut active) = (*company, *company);
         queue.len = 0;
         let mut at = 0;
@@ -221,7 +228,7 @@ impl BspTree<'_> {
                     }
                     Target::Groups { first, count } => {
                         for group in &self.groups[first..first + count] {
-                            let over = quest.test(group, &active);
+                            let over = quest.test(group, &active, &spans);
                             if !Q::ORDERED {
                                 for p in 0..PACKETS {
                                     live[p] &= !over[p];
@@ -241,6 +248,24 @@ impl BspTree<'_> {
                 }
             };
         }
+    }
+
+    /// Whether a ray of each packet crosses about the same of the root's cells as the others: measuring all of them costs more than it saves
+    /// where rays go everywhere.
+    #[inline(always)]
+    fn seem_together<S: Simd>(&self, slabs: &BundleSlabs, company: &Rays, bundle: &RayBundle) -> bool {
+        let (mut all, mut each, mut samples) = (0, 0, 0);
+        for p in 0..PACKETS {
+            if company[p] != 0 {
+                let lane = company[p].trailing_zeros() as usize % LANES;
+                let own = slabs.alone(p, lane, bundle.tmin[p][lane]);
+                let (_, crossed) = own.cross::<S::Eight>(&self.nodes[0], bundle.limit[p][lane]);
+                all |= crossed;
+                each += crossed.count_ones();
+                samples += 1;
+            }
+        }
+        each * 100 >= samples * all.count_ones() * ALIKE
     }
 
     /// Asks for what a walk will read next.
@@ -265,8 +290,8 @@ impl<S: Simd> BundleQuest<S> for ClosestOf<'_> {
     const ORDERED: bool = true;
 
     #[inline(always)]
-    fn test(&mut self, group: &TriGroup, active: &Rays) -> Rays {
-        self.bundle.closest::<S>(self.rays, group, active, self.targets);
+    fn test(&mut self, group: &TriGroup, active: &Rays, spans: &Spans) -> Rays {
+        self.bundle.closest::<S>(self.rays, group, active, spans, self.targets);
         [0; PACKETS]
     }
 
@@ -296,8 +321,8 @@ impl<S: Simd> BundleQuest<S> for AnyOf<'_> {
     const ORDERED: bool = false;
 
     #[inline(always)]
-    fn test(&mut self, group: &TriGroup, active: &Rays) -> Rays {
-        let hit = self.bundle.any::<S>(self.rays, group, active, self.targets);
+    fn test(&mut self, group: &TriGroup, active: &Rays, spans: &Spans) -> Rays {
+        let hit = self.bundle.any::<S>(self.rays, group, active, spans, self.targets);
         for p in 0..PACKETS {
             self.blocked[p] |= hit[p];
         }

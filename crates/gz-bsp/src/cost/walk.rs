@@ -8,7 +8,7 @@ use super::build::MOST_LEVELS;
 use super::slabs::{BundleSlabs, Slabs};
 use super::wide::{BspTree, Child, Target};
 use crate::Visits;
-use gz_core::kernel::{Candidates, FilterRay, Nearest, RayBundle, is_hit};
+use gz_core::kernel::{Asked, Candidates, FilterRay, Nearest, RayBundle, is_hit};
 use gz_core::simd::{Lanes, Simd};
 use gz_core::{GzRay, NO_TRI, RayBatch, Targets, TriId};
 
@@ -79,7 +79,8 @@ pub(super) trait Quest {
 
 /// The front-most hit of a ray.
 pub(super) struct NearestOf<'q> {
-    pub(super) ray: GzRay,
+    pub(super) ray: Asked<'q>,
+    pub(super) tmin: f32,
     pub(super) targets: &'q Targets<'q>,
     pub(super) best: Nearest,
 }
@@ -93,14 +94,14 @@ impl Quest for NearestOf<'_> {
     #[inline(always)]
     fn take(&mut self, found: &Candidates, lane: usize, tri: TriId) -> Option<f32> {
         if self.targets.sees(tri) {
-            self.best.take(&self.ray, found, lane, tri, self.targets.positions());
+            self.best.take(self.ray, self.tmin, found, lane, tri, self.targets.positions());
         }
         Some(self.best.limit())
     }
 
     fn test(&mut self, tri: TriId) -> Option<f32> {
         if self.targets.sees(tri) {
-            self.best.settle(&self.ray, tri, self.targets.positions());
+            self.best.settle(&self.ray.ray(), tri, self.targets.positions());
         }
         Some(self.best.limit())
     }
@@ -108,7 +109,9 @@ impl Quest for NearestOf<'_> {
 
 /// Whether a ray hits anything.
 pub(super) struct Blocked<'q> {
-    pub(super) ray: GzRay,
+    pub(super) ray: Asked<'q>,
+    /// Between which t.
+    pub(super) ends: [f32; 2],
     pub(super) targets: &'q Targets<'q>,
     pub(super) leaves: TriId,
     pub(super) found: bool,
@@ -117,18 +120,18 @@ pub(super) struct Blocked<'q> {
 impl Quest for Blocked<'_> {
     #[inline(always)]
     fn start(&self) -> f32 {
-        self.ray.tmax
+        self.ends[1]
     }
 
     #[inline(always)]
     fn take(&mut self, found: &Candidates, lane: usize, tri: TriId) -> Option<f32> {
-        self.found = tri != self.leaves && self.targets.sees(tri) && found.is_hit(lane, &self.ray, self.targets.position(tri));
-        (!self.found).then_some(self.ray.tmax)
+        self.found = tri != self.leaves && self.targets.sees(tri) && found.is_hit(lane, self.ray, self.ends, self.targets.position(tri));
+        (!self.found).then_some(self.ends[1])
     }
 
     fn test(&mut self, tri: TriId) -> Option<f32> {
-        self.found = self.targets.sees(tri) && is_hit(&self.ray, self.targets.position(tri));
-        (!self.found).then_some(self.ray.tmax)
+        self.found = self.targets.sees(tri) && is_hit(&self.ray.ray(), self.targets.position(tri));
+        (!self.found).then_some(self.ends[1])
     }
 }
 
@@ -148,8 +151,9 @@ impl BspTree<'_> {
         targets: &Targets<'_>,
         visits: &mut impl Visits,
     ) {
-        let mut quest = NearestOf { ray: rays.ray(bundle.place(p, lane)), targets, best: bundle.nearest(p, lane) };
-        let (own, filter) = (slabs.alone(p, lane, bundle.tmin[p][lane]), bundle.filter_ray(p, lane));
+        let (ray, tmin) = (Asked::new(rays, bundle.place(p, lane)), bundle.tmin[p][lane]);
+        let mut quest = NearestOf { ray, tmin, targets, best: bundle.nearest(p, lane) };
+        let (own, filter) = (slabs.alone(p, lane, tmin), bundle.filter_ray(p, lane));
         self.send_alone::<S>(&own, &filter, child, stack, &mut quest, visits);
         bundle.set_nearest(p, lane, quest.best);
     }
@@ -169,9 +173,9 @@ impl BspTree<'_> {
         targets: &Targets<'_>,
         visits: &mut impl Visits,
     ) -> bool {
-        let place = bundle.place(p, lane);
-        let mut quest = Blocked { ray: rays.ray(place), targets, leaves: rays.left_by(place), found: false };
-        let (own, filter) = (slabs.alone(p, lane, bundle.tmin[p][lane]), bundle.filter_ray(p, lane));
+        let (place, ends) = (bundle.place(p, lane), [bundle.tmin[p][lane], bundle.limit[p][lane]]);
+        let mut quest = Blocked { ray: Asked::new(rays, place), ends, targets, leaves: rays.left_by(place), found: false };
+        let (own, filter) = (slabs.alone(p, lane, ends[0]), bundle.filter_ray(p, lane));
         self.send_alone::<S>(&own, &filter, child, stack, &mut quest, visits);
         quest.found
     }

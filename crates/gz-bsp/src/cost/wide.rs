@@ -86,6 +86,13 @@ impl WideNode {
         self.children[slot] = child;
     }
 
+    /// Where all cells begin and end along an axis for a ray that enters at their lower end (`near` 0) or at their upper end (1).
+    #[inline(always)]
+    pub(super) fn ends(&self, axis: usize, near: usize) -> [&[f32; WIDTH]; 2] {
+        let near = near & 1;
+        [&self.planes[2 * axis + near], &self.planes[2 * axis + 1 - near]]
+    }
+
     pub(crate) fn bounds(&self, slot: usize) -> Bounds {
         let at = |end: usize| [0, 1, 2].map(|axis| self.planes[2 * axis + end][slot]).into();
         Bounds { min: at(0), max: at(1) }

@@ -1,11 +1,12 @@
 //! T, u and v of hits: pure functions of ray and triangle, so every query gives these bits.
 //!
 //! T is the exact t rounded once: in f64 when both ends of its interval round alike, else by the exact stage. u = V/D and v = W/D are
-//! within 1 ulp or 2^-40 of the true ones.
+//! within 1 ulp or 2^-40 of the true ones. The f64 numbers are tried with quick errors first and with closer ones where those settle nothing:
+//! the same steps for one hit and for eight, so that the bits are the same.
 
 use super::exact::ExactHit;
 use super::solution::{Bounded, Solution};
-use crate::simd::{Doubles, EightDoubles, Lanes, Simd, nine};
+use crate::simd::{Doubles, EightDoubles, Lanes, Simd, nine, numbers_of};
 use crate::{GzCoord, GzRay, Hit, TriId};
 
 /// What f64 says of hits: each number, and where it is not settled and the exact stage has it.
@@ -40,6 +41,11 @@ fn cut<F: Doubles>(weight: F) -> F {
 
 /// T, u and v of a hit, for a ray and a triangle that are known to meet.
 pub(crate) fn t_u_v(ray: &GzRay, corners: &[GzCoord; 3]) -> (f32, f32, f32) {
+    let quick = InDoubles::of(&Solution::quick_of_one(ray, corners));
+    let [lo, hi] = quick.t.map(|t| t as f32);
+    if quick.certainty > 0.0 && lo.to_bits() == hi.to_bits() && quick.weights >= 0.0 {
+        return (lo, quick.v as f32, quick.w as f32);
+    }
     let found = InDoubles::of(&Solution::of_one(ray, corners));
     let certain = found.certainty > 0.0;
     let [lo, hi] = found.t.map(|t| t as f32);
@@ -69,18 +75,25 @@ impl<S: Simd> EightPairs<'_, S> {
         let numbers = [nine(c[0]), nine(c[1]), nine(c[2]), nine(c[3]), nine(c[4]), nine(c[5]), nine(c[6]), nine(c[7])];
         let [ax, ay, az, bx, by, bz, cx, cy, cz] = S::corners(&numbers);
         let corners = [widen3::<S>([ax, ay, az]), widen3::<S>([bx, by, bz]), widen3::<S>([cx, cy, cz])];
-        let found = InDoubles::of(&Solution::of(self.origin, self.direction, &corners));
-        let (mut lo, mut hi, mut v, mut w) = ([0.0; 8], [0.0; 8], [0.0; 8], [0.0; 8]);
-        found.t[0].narrow(&mut lo);
-        found.t[1].narrow(&mut hi);
-        found.v.narrow(&mut v);
-        found.w.narrow(&mut w);
+        let found = InDoubles::of(&Solution::quick(self.origin, self.direction, &corners));
+        let [lo, hi] = [found.t[0], found.t[1]];
+        let (lo, hi, v, w) = (S::narrow(lo), S::narrow(hi), S::narrow(found.v), S::narrow(found.w));
         let zero = <S::Doubles>::splat(0.0);
-        let certain = !found.certainty.at_most(zero) & zero.at_most(found.weights);
-        let settled = certain & <S::Eight>::load(&lo).same_bits(<S::Eight>::load(&hi));
-        for (lane, to) in hits.iter_mut().enumerate() {
-            let found = Hit { t: lo[lane], tri: ids[lane], u: v[lane], v: w[lane] };
-            *to = if hit >> lane & 1 != 0 { found } else { Hit::MISS };
+        let settled = lo.same_bits(hi) & !found.certainty.at_most(zero) & zero.at_most(found.weights);
+        let nothing = <S::Eight>::splat(0.0);
+        let rows = [
+            lo.select(hit, <S::Eight>::splat(Hit::MISS.t)),
+            <S::Eight>::load(numbers_of(ids)).select(hit, <S::Eight>::splat(f32::from_bits(Hit::MISS.tri))),
+            v.select(hit, nothing),
+            w.select(hit, nothing),
+        ];
+        match hits.first_chunk_mut() {
+            Some(hits) => S::write_hits(rows, hits),
+            None => {
+                let mut eight = [Hit::MISS; 8];
+                S::write_hits(rows, &mut eight);
+                hits.copy_from_slice(&eight[..hits.len()]);
+            }
         }
         let mut open = hit & !settled;
         while open != 0 {

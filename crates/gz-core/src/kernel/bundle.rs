@@ -17,6 +17,9 @@ pub const PACKETS: usize = 4;
 /// Rays of a bundle.
 pub const BUNDLE: usize = LANES * PACKETS;
 
+/// All rays of a packet.
+const WHOLE: u32 = (1 << LANES) - 1;
+
 /// One number for each ray of a packet.
 pub type Row = [f32; LANES];
 /// One number for each ray.
@@ -55,10 +58,12 @@ pub struct RayBundle {
     pub(super) found: Rays,
     pub(super) centre: [f32; 3],
     pub(super) margin: Margin,
-    /// At least the distance along an axis from a ray's origin to the rounded one.
-    lost: f32,
+    /// For a ray by itself, from its own origin, rounded.
+    alone: Margin,
     /// All origins are the centre.
     pub(super) common_origin: bool,
+    /// All directions are equal.
+    pub(super) common_direction: bool,
     scale: [f32; 3],
     /// The first ray's number in its batch.
     from: usize,
@@ -82,8 +87,9 @@ impl RayBundle {
             found: [0; PACKETS],
             centre: [0.0; 3],
             margin: Margin::default(),
-            lost: 0.0,
+            alone: Margin::default(),
             common_origin: false,
+            common_direction: false,
             scale: [1.0; 3],
             from: 0,
         }
@@ -97,6 +103,7 @@ impl RayBundle {
         self.scale = space.scale.to_array();
         self.found = [0; PACKETS];
         self.common_origin = matches!(rays.origin, PerRay::One(_));
+        self.common_direction = matches!(rays.direction, PerRay::One(_));
         let mut fit = [0; PACKETS];
         let packets = len.div_ceil(LANES);
         let mut tiny = 0;
@@ -135,8 +142,11 @@ impl RayBundle {
                 }
             }
             PerRay::Each(all) => {
-                let points = padded(coordinates(&all[from..from + len]));
-                let [x, y, z] = <S::Sixteen>::unzip3(&points);
+                let all = coordinates(&all[from..from + len]);
+                let [x, y, z] = match all.first_chunk() {
+                    Some(points) => <S::Sixteen>::unzip3(points),
+                    None => <S::Sixteen>::unzip3(&padded(all)),
+                };
                 x.times(<S::Sixteen>::splat(scale.x)).store(&mut self.direction[0][p]);
                 y.times(<S::Sixteen>::splat(scale.y)).store(&mut self.direction[1][p]);
                 z.times(<S::Sixteen>::splat(scale.z)).store(&mut self.direction[2][p]);
@@ -156,8 +166,11 @@ impl RayBundle {
             PerRay::Each(all) => {
                 for half in 0..2 {
                     let first = (half * 8).min(len - 1);
-                    let points = padded(coordinates_f64(&all[from + first..from + len.min(first + 8)]));
-                    let points = <S::Doubles>::unzip3(&points);
+                    let eight = coordinates_f64(&all[from + first..from + len.min(first + 8)]);
+                    let points = match eight.first_chunk() {
+                        Some(points) => <S::Doubles>::unzip3(points),
+                        None => <S::Doubles>::unzip3(&padded(eight)),
+                    };
                     for axis in 0..3 {
                         *eight_mut(&mut self.exact_origin[axis][p], half) = points[axis].array();
                         let stretched = points[axis].times(<S::Doubles>::splat(f64::from(self.scale[axis])));
@@ -198,12 +211,17 @@ impl RayBundle {
     #[inline(always)]
     fn settle_down<S: Simd>(&mut self, fit: &Rays, packets: usize) {
         let zero = <S::Sixteen>::splat(0.0);
-        let (mut size, mut spread) = (zero, zero);
-        for p in 0..packets {
-            let d = self.packet_of::<S::Sixteen>(&self.direction, p);
-            size = size.max(d[0].abs().plus(d[1].abs()).plus(d[2].abs()).select(fit[p], zero));
+        let mut spread = zero;
+        // The greatest of each component rather than of their sums: that is what `spans.rs` needs.
+        let mut size = 0.0;
+        for d in &self.direction {
+            let mut greatest = zero;
+            for p in 0..packets {
+                greatest = greatest.max(<S::Sixteen>::load(&d[p]).abs().select(fit[p], zero));
+            }
+            size += greatest.greatest();
         }
-        let size = size.greatest() * (1.0 + f32::EPSILON);
+        let size = size * (1.0 + 2.0 * f32::EPSILON);
         let mut reach = 0.0f32;
         for axis in 0..3 {
             let [least, greatest] = match self.common_origin {
@@ -214,9 +232,10 @@ impl RayBundle {
             reach = reach.max(least.abs()).max(greatest.abs());
         }
         // Half a unit in the last place, and what the least numbers lose.
-        self.lost = reach * f32::EPSILON + f32::MIN_POSITIVE;
+        let lost = reach * f32::EPSILON + f32::MIN_POSITIVE;
+        self.alone = Margin::new(size, 0.0, lost);
         if self.common_origin {
-            self.margin = Margin::new(size, 0.0, self.lost);
+            self.margin = self.alone;
             return;
         }
         for p in 0..packets {
@@ -253,7 +272,11 @@ impl RayBundle {
     #[inline(always)]
     pub fn filter_ray(&self, p: usize, lane: usize) -> FilterRay {
         let [o, d] = [&self.origin, &self.direction];
-        FilterRay::of([o[0][p][lane], o[1][p][lane], o[2][p][lane]], [d[0][p][lane], d[1][p][lane], d[2][p][lane]], self.lost)
+        FilterRay {
+            origin: [o[0][p][lane], o[1][p][lane], o[2][p][lane]],
+            direction: [d[0][p][lane], d[1][p][lane], d[2][p][lane]],
+            margin: self.alone,
+        }
     }
 
     /// The best hit so far of one ray.
@@ -314,12 +337,18 @@ fn drop_invalid(fit: &mut Rays, rays: &RayBatch<'_>, from: usize) {
     }
 }
 
+/// `x` where the bit is set, `other` elsewhere; as most sets are whole, that is looked at first.
+#[inline(always)]
+pub(super) fn some<L: Lanes<LANES>>(x: L, bits: u32, other: L) -> L {
+    if bits == WHOLE { x } else { x.select(bits, other) }
+}
+
 /// The least number of the rays in a set; infinite when it is empty.
 #[inline(always)]
 pub fn least<S: Simd>(each: &Each, rays: &Rays) -> f32 {
     let mut least = <S::Sixteen>::splat(f32::INFINITY);
     for p in 0..PACKETS {
-        least = <S::Sixteen>::load(&each[p]).select(rays[p], least).min(least);
+        least = some(<S::Sixteen>::load(&each[p]), rays[p], least).min(least);
     }
     least.least()
 }
@@ -329,7 +358,7 @@ pub fn least<S: Simd>(each: &Each, rays: &Rays) -> f32 {
 pub fn greatest<S: Simd>(each: &Each, rays: &Rays) -> f32 {
     let mut greatest = <S::Sixteen>::splat(f32::NEG_INFINITY);
     for p in 0..PACKETS {
-        greatest = <S::Sixteen>::load(&each[p]).select(rays[p], greatest).max(greatest);
+        greatest = some(<S::Sixteen>::load(&each[p]), rays[p], greatest).max(greatest);
     }
     greatest.greatest()
 }
@@ -342,13 +371,11 @@ fn take(row: &mut Row, property: &PerRay<'_, f32>, from: usize, len: usize) {
     }
 }
 
-/// The points, the last one repeated where there are too few.
-#[inline(always)]
+/// The points, fewer than `N`, with the last one repeated.
+#[cold]
+#[inline(never)]
 fn padded<T: Copy, const N: usize>(points: &[T]) -> [T; N] {
-    match points.first_chunk() {
-        Some(all) => *all,
-        None => std::array::from_fn(|k| points[k.min(points.len() - 1)]),
-    }
+    std::array::from_fn(|k| points[k.min(points.len() - 1)])
 }
 
 /// The lower or upper eight.

@@ -21,9 +21,21 @@ impl Solution<f64> {
     /// The arithmetic of one ray and one triangle.
     #[inline(always)]
     pub(super) fn of_one(ray: &GzRay, corners: &[GzCoord; 3]) -> Self {
-        let wide = corners.map(|p| p.as_dvec3().to_array());
-        Self::of(ray.origin.to_array(), ray.direction.as_dvec3().to_array(), &wide)
+        let (origin, direction, corners) = in_doubles(ray, corners);
+        Self::of(origin, direction, &corners)
     }
+
+    /// The same with quick errors.
+    #[inline(always)]
+    pub(super) fn quick_of_one(ray: &GzRay, corners: &[GzCoord; 3]) -> Self {
+        let (origin, direction, corners) = in_doubles(ray, corners);
+        Self::quick(origin, direction, &corners)
+    }
+}
+
+#[inline(always)]
+fn in_doubles(ray: &GzRay, corners: &[GzCoord; 3]) -> ([f64; 3], [f64; 3], [[f64; 3]; 3]) {
+    (ray.origin.to_array(), ray.direction.as_dvec3().to_array(), corners.map(|p| p.as_dvec3().to_array()))
 }
 
 /// What f64 can say of a ray and a triangle.

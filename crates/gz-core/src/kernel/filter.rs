@@ -144,13 +144,8 @@ impl FilterRay {
         }
         let rounded = origin.as_vec3();
         let lost = (origin - rounded.as_dvec3()).abs().max_element() as f32;
-        Some(Self::of(rounded.to_array(), direction.to_array(), lost * (1.0 + 2.0 * E)))
-    }
-
-    /// The ray from `origin`, which is at most `lost` from the true one along each axis; all within range.
-    #[inline(always)]
-    pub(super) fn of(origin: [f32; 3], direction: [f32; 3], lost: f32) -> Self {
-        let size = direction[0].abs() + direction[1].abs() + direction[2].abs();
-        Self { origin, direction, margin: Margin::new(size, 0.0, lost) }
+        let size = direction.x.abs() + direction.y.abs() + direction.z.abs();
+        let margin = Margin::new(size, 0.0, lost * (1.0 + 2.0 * E));
+        Some(Self { origin: rounded.to_array(), direction: direction.to_array(), margin })
     }
 }

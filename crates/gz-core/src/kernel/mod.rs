@@ -17,6 +17,7 @@ mod pluecker;
 mod quotient;
 mod solution;
 mod space;
+mod spans;
 mod together;
 mod woop;
 
@@ -25,10 +26,11 @@ pub use bundle::{BUNDLE, Each, LANES, PACKETS, RayBundle, Rays, Row, count, grea
 pub(crate) use exact::side_sign;
 pub use filter::FilterRay;
 pub use group::{Candidates, TriGroup};
-pub use nearest::Nearest;
+pub use nearest::{Asked, Nearest};
 pub use order::{Closest, is_hit};
 pub use plain::plain;
 pub use space::FilterSpace;
+pub use spans::Spans;
 
 /// Which ray-triangle test answers a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,7 +3,27 @@
 use super::answer::t_u_v;
 use super::group::Candidates;
 use super::order::{closer, is_hit};
-use crate::{GzCoord, GzRay, Hit, TriId};
+use crate::{GzCoord, GzRay, Hit, RayBatch, TriId};
+
+/// A ray of a batch, put together only where f32 does not decide.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'r> {
+    rays: &'r RayBatch<'r>,
+    place: usize,
+}
+
+impl<'r> Asked<'r> {
+    /// Ray `place` of `rays`.
+    #[inline(always)]
+    pub fn new(rays: &'r RayBatch<'r>, place: usize) -> Self {
+        Self { rays, place }
+    }
+
+    /// The ray.
+    pub fn ray(&self) -> GzRay {
+        self.rays.ray(self.place)
+    }
+}
 
 /// The front-most hit of one ray so far.
 ///
@@ -31,28 +51,41 @@ impl Nearest {
         self.hi
     }
 
-    /// Takes triangle `tri`, lane `lane` of `candidates`, into account. Order of calls and repeated calls do not show in the result.
+    /// Takes triangle `tri`, lane `lane` of `candidates`, into account for `ray`, whose t begins at `tmin`. Order of calls and repeated
+    /// calls do not show in the result.
     #[inline(always)]
-    pub fn take(&mut self, ray: &GzRay, candidates: &Candidates, lane: usize, tri: TriId, positions: &[[GzCoord; 3]]) {
+    pub fn take(
+        &mut self,
+        ray: Asked<'_>,
+        tmin: f32,
+        candidates: &Candidates,
+        lane: usize,
+        tri: TriId,
+        positions: &[[GzCoord; 3]],
+    ) {
         if tri == self.tri {
             return;
         }
         let (lo, hi) = (candidates.lo[lane], candidates.hi[lane]);
         if candidates.sure >> lane & 1 != 0 {
-            if lo > self.hi || hi < ray.tmin {
+            if lo > self.hi || hi < tmin {
                 return;
             }
-            if hi < self.lo && lo > ray.tmin {
+            if hi < self.lo && lo > tmin {
                 *self = Self { lo, hi, tri, found: true };
                 return;
             }
         }
-        self.settle(ray, tri, positions);
+        self.settle_asked(ray, tri, positions);
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn settle_asked(&mut self, ray: Asked<'_>, tri: TriId, positions: &[[GzCoord; 3]]) {
+        self.settle(&ray.ray(), tri, positions);
     }
 
     /// The same by f64 or exactly.
-    #[cold]
-    #[inline(never)]
     pub fn settle(&mut self, ray: &GzRay, tri: TriId, positions: &[[GzCoord; 3]]) {
         if let Some((lo, hi)) = closer(ray, self.found.then_some(self.tri), tri, positions) {
             *self = Self { lo, hi, tri, found: true };
@@ -70,18 +103,24 @@ impl Nearest {
 }
 
 impl Candidates {
-    /// Whether the ray hits lane `lane`, a triangle with these corners.
+    /// Whether `ray`, whose t is between `tmin` and `tmax`, hits lane `lane`, a triangle with these corners.
     #[inline(always)]
-    pub fn is_hit(&self, lane: usize, ray: &GzRay, corners: &[GzCoord; 3]) -> bool {
+    pub fn is_hit(&self, lane: usize, ray: Asked<'_>, [tmin, tmax]: [f32; 2], corners: &[GzCoord; 3]) -> bool {
         let (lo, hi) = (self.lo[lane], self.hi[lane]);
         if self.sure >> lane & 1 != 0 {
-            if lo > ray.tmin && hi < ray.tmax {
+            if lo > tmin && hi < tmax {
                 return true;
             }
-            if lo > ray.tmax || hi < ray.tmin {
+            if lo > tmax || hi < tmin {
                 return false;
             }
         }
-        is_hit(ray, corners)
+        is_hit_asked(ray, corners)
     }
+}
+
+#[cold]
+#[inline(never)]
+fn is_hit_asked(ray: Asked<'_>, corners: &[GzCoord; 3]) -> bool {
+    is_hit(&ray.ray(), corners)
 }

@@ -23,20 +23,39 @@ pub(super) struct Bounded<F> {
     pub(super) error: F,
 }
 
-/// d.(b x c) with its error, for rounded differences b, c.
+/// The products of b x c, for rounded differences b, c: what is added and what is subtracted along each axis.
+#[inline(always)]
+fn products<F: Doubles>(b: [F; 3], c: [F; 3]) -> [[F; 2]; 3] {
+    [
+        [b[1].times(c[2]), b[2].times(c[1])],
+        [b[2].times(c[0]), b[0].times(c[2])],
+        [b[0].times(c[1]), b[1].times(c[0])],
+    ]
+}
+
+/// d.(b x c) from [`products`].
+#[inline(always)]
+fn triple<F: Doubles>(d: [F; 3], [x, y, z]: [[F; 2]; 3]) -> F {
+    d[0].times(x[0].minus(x[1])).plus(d[1].times(y[0].minus(y[1]))).plus(d[2].times(z[0].minus(z[1])))
+}
+
+/// d.(b x c) with its error.
 #[inline(always)]
 fn volume<F: Doubles>(d: [F; 3], b: [F; 3], c: [F; 3], bound: f64) -> Bounded<F> {
-    let (px, qx) = (b[1].times(c[2]), b[2].times(c[1]));
-    let (py, qy) = (b[2].times(c[0]), b[0].times(c[2]));
-    let (pz, qz) = (b[0].times(c[1]), b[1].times(c[0]));
-    let value = d[0].times(px.minus(qx)).plus(d[1].times(py.minus(qy))).plus(d[2].times(pz.minus(qz)));
-    let permanent = share(d[0], px, qx).plus(share(d[1], py, qy)).plus(share(d[2], pz, qz));
-    Bounded { value, error: F::splat(bound).times(permanent) }
+    let products = products(b, c);
+    let permanent = share(d[0], products[0]).plus(share(d[1], products[1])).plus(share(d[2], products[2]));
+    Bounded { value: triple(d, products), error: F::splat(bound).times(permanent) }
 }
 
 #[inline(always)]
-fn share<F: Doubles>(d: F, p: F, q: F) -> F {
+fn share<F: Doubles>(d: F, [p, q]: [F; 2]) -> F {
     d.abs().times(p.abs().plus(q.abs()))
+}
+
+/// The greatest magnitude of a component.
+#[inline(always)]
+fn extent<F: Doubles>(x: [F; 3]) -> F {
+    x[0].abs().or_more(x[1].abs()).or_more(x[2].abs())
 }
 
 /// All that f64 knows of a ray and a triangle, from edges e1 = b - a, e2 = c - a and A = a - o.
@@ -60,6 +79,26 @@ impl<F: Doubles> Solution<F> {
             w: volume(direction, from_origin, e1, VOLUME_BOUND),
             d: volume(direction, e1, e2, VOLUME_BOUND),
             m: volume(from_origin, e1, e2, DISTANCE_BOUND),
+        }
+    }
+
+    /// The same numbers with errors that are larger and quickly had: no permanent is above 2 |d| |b| |c|, with the sum of d's
+    /// components and the greatest of b's and c's; the roundings of that are within what the bounds have to spare.
+    #[inline(always)]
+    pub(super) fn quick(origin: [F; 3], direction: [F; 3], corners: &[[F; 3]; 3]) -> Self {
+        let [a, b, c] = *corners;
+        let (e1, e2, from_origin) = (difference(b, a), difference(c, a), difference(a, origin));
+        let (size, away) = (extent(e1).or_more(extent(e2)), extent(from_origin));
+        let area = size.times(size);
+        let speed = direction[0].abs().plus(direction[1].abs()).plus(direction[2].abs());
+        let per_volume = speed.times(F::splat(2.0 * VOLUME_BOUND));
+        let error = per_volume.times(size).times(away);
+        let normal = products(e1, e2);
+        Self {
+            v: Bounded { value: triple(direction, products(e2, from_origin)), error },
+            w: Bounded { value: triple(direction, products(from_origin, e1)), error },
+            d: Bounded { value: triple(direction, normal), error: per_volume.times(area) },
+            m: Bounded { value: triple(from_origin, normal), error: F::splat(6.0 * DISTANCE_BOUND).times(away).times(area) },
         }
     }
 

@@ -5,7 +5,9 @@
 use super::bundle::{LANES, PACKETS, RayBundle, Rays};
 use super::filter::{Judged, distance, judge};
 use super::group::{TriGroup, cross, dot, minus3};
+use super::nearest::Asked;
 use super::order::is_hit;
+use super::spans::{BOUND, Spans};
 use crate::simd::{Lanes, Simd, arrays3, load3, splat3};
 use crate::{GzCoord, GzRay, NO_TRI, RayBatch, Targets, TriId};
 
@@ -13,30 +15,35 @@ use crate::{GzCoord, GzRay, NO_TRI, RayBatch, Targets, TriId};
 const FEW: u32 = 4;
 
 impl RayBundle {
-    /// Takes the triangles of `group` into account for the rays of `active`, all fit.
+    /// Takes the triangles of `group` into account for the rays of `active`, all fit and of those that `spans` is of.
     #[inline(always)]
-    pub fn closest<S: Simd>(&mut self, rays: &RayBatch<'_>, group: &TriGroup, active: &Rays, targets: &Targets<'_>) {
-        let mut together = *active;
-        let mut many = 0;
-        for p in 0..PACKETS {
-            if active[p].count_ones() >= FEW {
-                many |= active[p];
-                continue;
-            }
-            together[p] = 0;
-            let mut left = active[p];
-            while left != 0 {
-                self.closest_alone::<S>(rays, group, p, left.trailing_zeros() as usize, targets);
-                left &= left - 1;
-            }
-        }
-        if many == 0 {
+    pub fn closest<S: Simd>(
+        &mut self,
+        rays: &RayBatch<'_>,
+        group: &TriGroup,
+        active: &Rays,
+        spans: &Spans,
+        targets: &Targets<'_>,
+    ) {
+        let prepared = Prepared::of::<S>(group, self, spans);
+        let mut worth = prepared.worth;
+        if worth == 0 {
             return;
         }
-        let prepared = Prepared::of::<S>(group, self);
-        for (k, &tri) in group.ids.iter().enumerate() {
-            if tri == NO_TRI {
-                break;
+        let together = self.split(active, worth);
+        for p in 0..PACKETS {
+            let mut alone = active[p] & !together[p];
+            while alone != 0 {
+                self.closest_alone::<S>(rays, group, p, alone.trailing_zeros() as usize, targets);
+                alone &= alone - 1;
+            }
+        }
+        while worth != 0 {
+            let k = worth.trailing_zeros() as usize & 7;
+            worth &= worth - 1;
+            let tri = group.ids[k];
+            if !targets.sees(tri) {
+                continue;
             }
             for p in 0..PACKETS {
                 if together[p] == 0 {
@@ -44,7 +51,7 @@ impl RayBundle {
                 }
                 let lines = self.lines::<S>(group, &prepared, k, p);
                 let possible = lines.judged.possible() & together[p] & !<S::Sixteen>::same(&self.tris[p], tri);
-                if possible == 0 || !targets.sees(tri) {
+                if possible == 0 {
                     continue;
                 }
                 let (lo, hi, known) = self.distances::<S>(&prepared, k, p, lines.along);
@@ -54,6 +61,8 @@ impl RayBundle {
                 let better = sure & hi.below(near) & tmin.below(lo);
                 let worse = sure & (limit.below(lo) | hi.below(tmin));
                 if better != 0 {
+                    // For the answer, which is formed from the corners.
+                    S::prefetch(targets.position(tri));
                     lo.select(better, near).store(&mut self.near[p]);
                     hi.select(better, limit).store(&mut self.limit[p]);
                     <S::Sixteen>::set_some(tri, better, &mut self.tris[p]);
@@ -67,71 +76,85 @@ impl RayBundle {
         }
     }
 
-    /// Which rays of `active` hit a triangle of `group`.
+    /// The rays of `active` that meet the triangles of a group one at a time with the others of their packet, when `worth` of them are left:
+    /// a ray by itself meets all eight at once.
     #[inline(always)]
-    pub fn any<S: Simd>(&self, rays: &RayBatch<'_>, group: &TriGroup, active: &Rays, targets: &Targets<'_>) -> Rays {
-        let mut open = *active;
-        let mut together = [0; PACKETS];
-        let mut many = 0;
+    fn split(&self, active: &Rays, worth: u32) -> Rays {
+        let most = worth.count_ones();
+        let mut together = *active;
+        for rays in &mut together {
+            if rays.count_ones() < most.min(FEW) {
+                *rays = 0;
+            }
+        }
+        together
+    }
+
+    /// Which rays of `active`, fit and of those that `spans` is of, hit a triangle of `group`.
+    #[inline(always)]
+    pub fn any<S: Simd>(
+        &self,
+        rays: &RayBatch<'_>,
+        group: &TriGroup,
+        active: &Rays,
+        spans: &Spans,
+        targets: &Targets<'_>,
+    ) -> Rays {
+        let prepared = Prepared::of::<S>(group, self, spans);
+        let mut worth = prepared.worth;
+        let mut hits = [0; PACKETS];
+        if worth == 0 {
+            return hits;
+        }
+        let mut together = self.split(active, worth);
         for p in 0..PACKETS {
-            if active[p].count_ones() >= FEW {
-                many |= active[p];
-                together[p] = active[p];
+            let mut alone = active[p] & !together[p];
+            while alone != 0 {
+                let lane = alone.trailing_zeros() as usize;
+                alone &= alone - 1;
+                hits[p] |= u32::from(self.any_alone::<S>(rays, group, p, lane, targets)) << lane;
+            }
+        }
+        while worth != 0 {
+            let k = worth.trailing_zeros() as usize & 7;
+            worth &= worth - 1;
+            let tri = group.ids[k];
+            if !targets.sees(tri) {
                 continue;
             }
-            let mut left = active[p];
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize;
-                left &= left - 1;
-                if self.any_alone::<S>(rays, group, p, lane, targets) {
-                    open[p] &= !(1 << lane);
-                }
-            }
-        }
-        if many != 0 {
-            let prepared = Prepared::of::<S>(group, self);
-            for (k, &tri) in group.ids.iter().enumerate() {
-                if tri == NO_TRI {
-                    break;
-                }
-                for p in 0..PACKETS {
-                    if together[p] == 0 {
-                        continue;
-                    }
-                    let lines = self.lines::<S>(group, &prepared, k, p);
-                    let possible = lines.judged.possible() & together[p] & !<S::Sixteen>::same(&self.tris[p], tri);
-                    if possible == 0 || !targets.sees(tri) {
-                        continue;
-                    }
-                    let (lo, hi, known) = self.distances::<S>(&prepared, k, p, lines.along);
-                    let (tmin, limit) = (<S::Sixteen>::load(&self.tmin[p]), <S::Sixteen>::load(&self.limit[p]));
-                    let sure = lines.judged.sure() & known & possible;
-                    let hit = sure & hi.below(limit) & tmin.below(lo);
-                    let missed = sure & (limit.below(lo) | hi.below(tmin));
-                    let unsure = possible & !(hit | missed);
-                    together[p] &= !hit;
-                    if unsure != 0 {
-                        together[p] &= !self.settle_any(rays, p, unsure, targets.position(tri));
-                    }
-                }
-                if together == [0; PACKETS] {
-                    break;
-                }
-            }
             for p in 0..PACKETS {
-                if active[p].count_ones() >= FEW {
-                    open[p] = together[p];
+                if together[p] == 0 {
+                    continue;
                 }
+                let lines = self.lines::<S>(group, &prepared, k, p);
+                let possible = lines.judged.possible() & together[p] & !<S::Sixteen>::same(&self.tris[p], tri);
+                if possible == 0 {
+                    continue;
+                }
+                let (lo, hi, known) = self.distances::<S>(&prepared, k, p, lines.along);
+                let (tmin, limit) = (<S::Sixteen>::load(&self.tmin[p]), <S::Sixteen>::load(&self.limit[p]));
+                let sure = lines.judged.sure() & known & possible;
+                let mut hit = sure & hi.below(limit) & tmin.below(lo);
+                let missed = sure & (limit.below(lo) | hi.below(tmin));
+                let unsure = possible & !(hit | missed);
+                if unsure != 0 {
+                    hit |= self.settle_any(rays, p, unsure, targets.position(tri));
+                }
+                together[p] &= !hit;
+                hits[p] |= hit;
+            }
+            if together == [0; PACKETS] {
+                break;
             }
         }
-        std::array::from_fn(|p| active[p] & !open[p])
+        hits
     }
 
     /// One ray against the group's eight triangles.
     #[inline(always)]
     fn closest_alone<S: Simd>(&mut self, rays: &RayBatch<'_>, group: &TriGroup, p: usize, lane: usize, targets: &Targets<'_>) {
         let Some(found) = group.candidates::<S>(&self.filter_ray(p, lane)) else { return };
-        let ray = rays.ray(self.place(p, lane));
+        let (ray, tmin) = (Asked::new(rays, self.place(p, lane)), self.tmin[p][lane]);
         let mut best = self.nearest(p, lane);
         let mut possible = found.possible;
         while possible != 0 {
@@ -142,7 +165,7 @@ impl RayBundle {
                 break;
             }
             if targets.sees(tri) {
-                best.take(&ray, &found, k, tri, targets.positions());
+                best.take(ray, tmin, &found, k, tri, targets.positions());
             }
         }
         self.set_nearest(p, lane, best);
@@ -151,7 +174,7 @@ impl RayBundle {
     #[inline(always)]
     fn any_alone<S: Simd>(&self, rays: &RayBatch<'_>, group: &TriGroup, p: usize, lane: usize, targets: &Targets<'_>) -> bool {
         let Some(found) = group.candidates::<S>(&self.filter_ray(p, lane)) else { return false };
-        let ray = rays.ray(self.place(p, lane));
+        let (ray, ends) = (Asked::new(rays, self.place(p, lane)), [self.tmin[p][lane], self.limit[p][lane]]);
         let mut possible = found.possible;
         while possible != 0 {
             let k = possible.trailing_zeros() as usize;
@@ -160,7 +183,7 @@ impl RayBundle {
             if tri == NO_TRI {
                 break;
             }
-            if tri != self.tris[p][lane] && targets.sees(tri) && found.is_hit(k, &ray, targets.position(tri)) {
+            if tri != self.tris[p][lane] && targets.sees(tri) && found.is_hit(k, ray, ends, targets.position(tri)) {
                 return true;
             }
         }
@@ -237,23 +260,36 @@ struct Prepared {
     bound: [f32; 8],
     depth_error: [f32; 8],
     along_error: [f32; 8],
+    /// Triangles that not all rays of the set surely miss.
+    worth: u32,
 }
 
 impl Prepared {
     #[inline(always)]
-    fn of<S: Simd>(group: &TriGroup, bundle: &RayBundle) -> Self {
+    fn of<S: Simd>(group: &TriGroup, bundle: &RayBundle, spans: &Spans) -> Self {
         let (e1, e2) = (load3::<8, S::Eight>(&group.e1), load3(&group.e2));
         let a: [S::Eight; 3] = minus3(load3(&group.a), splat3(bundle.centre));
         let (size, away) = (<S::Eight>::load(&group.size), a[0].abs().max(a[1].abs()).max(a[2].abs()));
-        let normal = cross(e1, e2);
+        let (p, q, normal) = (cross(e2, a), cross(a, e1), cross(e1, e2));
+        let bound = bundle.margin.volume(size, away);
+        let (v, v_radius) = spans.interval(bundle, p, e2);
+        let (w, w_radius) = spans.interval(bundle, q, minus3(splat3([0.0; 3]), e1));
+        let (u, u_radius) = spans.interval(bundle, minus3(minus3(normal, p), q), minus3(e1, e2));
+        let bound_of_all = bound.times(<S::Eight>::splat(BOUND));
+        let most = u.plus(u_radius).min(v.plus(v_radius)).min(w.plus(w_radius)).plus(bound_of_all);
+        let least = u.minus(u_radius).max(v.minus(v_radius)).max(w.minus(w_radius)).minus(bound_of_all);
+        let zero = <S::Eight>::splat(0.0);
+        // NaN proves nothing.
+        let missed = most.below(zero) & zero.below(least);
         Self {
-            p: arrays3(cross(e2, a)),
-            q: arrays3(cross(a, e1)),
+            p: arrays3(p),
+            q: arrays3(q),
             normal: arrays3(normal),
             depth: dot(a, normal).array(),
-            bound: bundle.margin.volume(size, away).array(),
+            bound: bound.array(),
             depth_error: bundle.margin.depth(size, away).array(),
             along_error: bundle.margin.along(size).array(),
+            worth: !(missed | <S::Eight>::same(&group.ids, NO_TRI)) & 0xff,
         }
     }
 }

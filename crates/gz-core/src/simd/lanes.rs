@@ -1,6 +1,8 @@
 //! Numbers side by side, and how a task gets the best form of them.
 
 use super::SimdLevel;
+use super::view::rows_of;
+use crate::Hit;
 
 /// `N` f32 numbers worked on together.
 ///
@@ -169,6 +171,18 @@ pub trait Simd {
         ]
     }
 
+    /// The lanes rounded to f32.
+    fn narrow(x: Self::Doubles) -> Self::Eight;
+
+    /// Writes hits from rows of their t, triangles (as numbers of equal bits), u and v.
+    #[inline(always)]
+    fn write_hits(rows: [Self::Eight; 4], hits: &mut [Hit; 8]) {
+        let rows = [rows[0].array(), rows[1].array(), rows[2].array(), rows[3].array()];
+        for (i, to) in rows_of(hits).iter_mut().enumerate() {
+            *to = [rows[0][i], rows[1][i], rows[2][i], rows[3][i]];
+        }
+    }
+
     /// Asks for the cache lines of `what` ahead of its use.
     fn prefetch<T>(what: &T);
 }
@@ -204,6 +218,11 @@ impl Simd for PortableSimd {
     #[inline(always)]
     fn widen(x: Portable) -> PortableDoubles {
         PortableDoubles(x.0.map(f64::from))
+    }
+
+    #[inline(always)]
+    fn narrow(x: PortableDoubles) -> Portable {
+        Portable(x.0.map(|x| x as f32))
     }
 
     #[inline(always)]
@@ -306,6 +325,12 @@ impl<L: Lanes<8>> Lanes<16> for Pair<L> {
     #[inline(always)]
     fn below(self, other: Self) -> u32 {
         self.0.below(other.0) | self.1.below(other.1) << 8
+    }
+    #[inline(always)]
+    fn unzip3(points: &[[f32; 3]; 16]) -> [Self; 3] {
+        let (low, high) = halves(points);
+        let ([x, y, z], [x8, y8, z8]) = (L::unzip3(low), L::unzip3(high));
+        [Self(x, x8), Self(y, y8), Self(z, z8)]
     }
     #[inline(always)]
     fn same(ids: &[u32; 16], id: u32) -> u32 {
@@ -552,6 +577,36 @@ mod tests {
             let b = [2.0, -2.0, 0.25, 4.0, 16.0, -1.0, 1.0, 7.5];
             let twice = |x: [f32; 8]| std::array::from_fn(|i| if i < 8 { x[i] } else { -x[i - 8] });
             [everything::<8, S::Eight>(a, b), everything::<16, S::Sixteen>(twice(a), twice(b))]
+        }
+    }
+
+    struct Unzip;
+
+    impl Task for Unzip {
+        type Output = [Vec<f64>; 9];
+
+        #[inline(always)]
+        fn run<S: Simd>(self) -> Self::Output {
+            let points: [[f32; 3]; 16] = std::array::from_fn(|i| [0, 100, 200].map(|k| (k + i) as f32));
+            let doubles: [[f64; 3]; 8] = std::array::from_fn(|i| [0, 100, 200].map(|k| (k + i) as f64));
+            let (eight, sixteen) = (<S::Eight>::unzip3(points.first_chunk().unwrap()), <S::Sixteen>::unzip3(&points));
+            let doubles = <S::Doubles>::unzip3(&doubles);
+            let f64s = |row: &[f32]| row.iter().map(|&x| x.into()).collect::<Vec<f64>>();
+            std::array::from_fn(|k| match k {
+                0..3 => f64s(&eight[k].array()),
+                3..6 => f64s(&sixteen[k - 3].array()),
+                _ => doubles[k - 6].array().to_vec(),
+            })
+        }
+    }
+
+    #[test]
+    fn every_level_takes_points_apart() {
+        for &level in SimdLevel::available() {
+            for (k, row) in dispatch(level, Unzip).into_iter().enumerate() {
+                let expected = (0..if (3..6).contains(&k) { 16 } else { 8 }).map(|i| f64::from(100 * (k as u32 % 3) + i));
+                assert_eq!(row, expected.collect::<Vec<_>>(), "{level:?} {k}");
+            }
         }
     }
 

@@ -10,16 +10,16 @@ mod x86;
 pub use control::with_default_float_control;
 pub use lanes::{Doubles, EightDoubles, Lanes, Simd, Task, arrays3, dispatch, load3, splat3};
 use std::sync::OnceLock;
-pub use view::{coordinates, coordinates_f64, nine};
+pub use view::{coordinates, coordinates_f64, nine, numbers_of};
 
 /// A set of vector instructions that kernels are compiled for. Answers do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SimdLevel {
     /// What the build target guarantees.
     Portable,
-    /// AVX2 with fused multiply-add, 8 f32 at a time.
+    /// AVX2 with fused multiply-add and the bit operations of its time: eight f32 at a time.
     Avx2,
-    /// AVX-512 F, VL, DQ and BW, with the bit operations of AVX2's time: sixteen f32 at a time.
+    /// AVX-512 F, VL, DQ and BW: sixteen f32 at a time.
     Avx512,
 }
 
@@ -34,13 +34,12 @@ impl SimdLevel {
     pub fn available() -> &'static [Self] {
         #[cfg(target_arch = "x86_64")]
         {
-            let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
             let bits = is_x86_feature_detected!("bmi1")
                 && is_x86_feature_detected!("bmi2")
                 && is_x86_feature_detected!("lzcnt")
                 && is_x86_feature_detected!("popcnt");
+            let avx2 = bits && is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
             let avx512 = avx2
-                && bits
                 && is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512vl")
                 && is_x86_feature_detected!("avx512dq")

@@ -1,9 +1,10 @@
-//! Points as arrays of numbers.
+//! Points and hits as arrays of numbers.
 
-use crate::GzCoord;
+use crate::{GzCoord, Hit, TriId};
 use glam::DVec3;
 
 const _: () = assert!(size_of::<GzCoord>() == 12 && align_of::<GzCoord>() == 4);
+const _: () = assert!(size_of::<Hit>() == 16 && align_of::<Hit>() == 4);
 const _: () = assert!(size_of::<DVec3>() == 24 && align_of::<DVec3>() == 8);
 
 /// The points' coordinates.
@@ -25,6 +26,20 @@ pub fn coordinates_f64(points: &[DVec3]) -> &[[f64; 3]] {
 pub fn nine(corners: &[GzCoord; 3]) -> &[f32; 9] {
     // SAFETY: as above, three times.
     unsafe { &*std::ptr::from_ref(corners).cast() }
+}
+
+/// Triangle numbers as the f32 numbers of equal bits, only to be moved about.
+#[inline(always)]
+pub fn numbers_of(ids: &[TriId; 8]) -> &[f32; 8] {
+    // SAFETY: both are eight times four bytes, of which any are a number.
+    unsafe { &*std::ptr::from_ref(ids).cast() }
+}
+
+/// Hits as rows of t, the triangle's bits, u and v.
+#[inline(always)]
+pub(super) fn rows_of(hits: &mut [Hit; 8]) -> &mut [[f32; 4]; 8] {
+    // SAFETY: `Hit` is `repr(C)`: an f32, a u32 and two f32 of four bytes each, for all of which any bytes are a value.
+    unsafe { &mut *std::ptr::from_mut(hits).cast() }
 }
 
 #[cfg(test)]

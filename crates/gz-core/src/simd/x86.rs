@@ -3,6 +3,8 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::lanes::{Doubles, EightDoubles, Lanes, Pair, Simd, Task};
+use super::view::rows_of;
+use crate::Hit;
 use std::arch::x86_64::*;
 
 /// Calls an intrinsic on registers.
@@ -14,7 +16,7 @@ macro_rules! call {
     };
 }
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn run_avx2<T: Task>(task: T) -> T::Output {
     task.run::<Avx2Simd>()
 }
@@ -39,6 +41,17 @@ impl Simd for Avx2Simd {
     }
 
     #[inline(always)]
+    fn narrow(x: Avx2Doubles) -> Avx2 {
+        let (low, high) = (call!(_mm256_cvtpd_ps(x.0)), call!(_mm256_cvtpd_ps(x.1)));
+        Avx2(call!(_mm256_set_m128(high, low)))
+    }
+
+    #[inline(always)]
+    fn write_hits(rows: [Avx2; 4], hits: &mut [Hit; 8]) {
+        write_rows(rows, rows_of(hits));
+    }
+
+    #[inline(always)]
     fn corners(corners: &[&[f32; 9]; 8]) -> [Avx2; 9] {
         transpose(corners)
     }
@@ -60,6 +73,16 @@ impl Simd for Avx512Simd {
     }
 
     #[inline(always)]
+    fn narrow(x: Avx512Doubles) -> Avx2 {
+        Avx2(call!(_mm512_cvtpd_ps(x.0)))
+    }
+
+    #[inline(always)]
+    fn write_hits(rows: [Avx2; 4], hits: &mut [Hit; 8]) {
+        write_rows(rows, rows_of(hits));
+    }
+
+    #[inline(always)]
     fn corners(corners: &[&[f32; 9]; 8]) -> [Avx2; 9] {
         transpose(corners)
     }
@@ -76,6 +99,27 @@ fn prefetch<T>(what: &T) {
     for line in (0..size_of::<T>()).step_by(64) {
         // SAFETY: a prefetch reads nothing; the address is within `what`. SSE is part of x86-64.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line)) };
+    }
+}
+
+/// Four columns as rows of four.
+#[inline(always)]
+fn write_rows([a, b, c, d]: [Avx2; 4], to: &mut [[f32; 4]; 8]) {
+    // SAFETY: each row of `to` is written once, 16 bytes, unaligned; the features are there where the caller was reached.
+    unsafe {
+        let (ab, ab_high) = (_mm256_unpacklo_ps(a.0, b.0), _mm256_unpackhi_ps(a.0, b.0));
+        let (cd, cd_high) = (_mm256_unpacklo_ps(c.0, d.0), _mm256_unpackhi_ps(c.0, d.0));
+        // Row k beside row k + 4.
+        let rows = [
+            _mm256_shuffle_ps::<0x44>(ab, cd),
+            _mm256_shuffle_ps::<0xee>(ab, cd),
+            _mm256_shuffle_ps::<0x44>(ab_high, cd_high),
+            _mm256_shuffle_ps::<0xee>(ab_high, cd_high),
+        ];
+        for k in 0..4 {
+            _mm_storeu_ps(to[k].as_mut_ptr(), _mm256_castps256_ps128(rows[k]));
+            _mm_storeu_ps(to[k + 4].as_mut_ptr(), _mm256_extractf128_ps::<1>(rows[k]));
+        }
     }
 }
 
@@ -216,6 +260,24 @@ impl Lanes<8> for Avx2 {
     fn below(self, other: Self) -> u32 {
         let lanes = call!(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0));
         call!(_mm256_movemask_ps(lanes)) as u32
+    }
+    #[inline(always)]
+    fn unzip3(points: &[[f32; 3]; 8]) -> [Self; 3] {
+        let start: *const f32 = points.as_ptr().cast();
+        // SAFETY: the 24 numbers of `points` are read, four at a time; features as above.
+        unsafe {
+            // Numbers 4 k to 4 k + 3 beside those twelve further on.
+            let a = _mm256_loadu2_m128(start.add(12), start);
+            let b = _mm256_loadu2_m128(start.add(16), start.add(4));
+            let c = _mm256_loadu2_m128(start.add(20), start.add(8));
+            let x2y2x3y3 = _mm256_shuffle_ps::<0b10_01_11_10>(b, c);
+            let y0z0y1z1 = _mm256_shuffle_ps::<0b01_00_10_01>(a, b);
+            [
+                Self(_mm256_shuffle_ps::<0b10_00_11_00>(a, x2y2x3y3)),
+                Self(_mm256_shuffle_ps::<0b11_01_10_00>(y0z0y1z1, x2y2x3y3)),
+                Self(_mm256_shuffle_ps::<0b11_00_11_01>(y0z0y1z1, c)),
+            ]
+        }
     }
     #[inline(always)]
     fn same(ids: &[u32; 8], id: u32) -> u32 {
@@ -423,10 +485,38 @@ impl EightDoubles for Avx2Doubles {
         }
     }
     #[inline(always)]
+    fn unzip3(points: &[[f64; 3]; 8]) -> [Self; 3] {
+        let start: *const f64 = points.as_ptr().cast();
+        // SAFETY: the 24 numbers of `points` are read, twelve by each call; features as above.
+        let ([x, y, z], [x4, y4, z4]) = unsafe { (unzip_four(start), unzip_four(start.add(12))) };
+        [Self(x, x4), Self(y, y4), Self(z, z4)]
+    }
+    #[inline(always)]
     fn at_most(self, other: Self) -> u32 {
         let low = call!(_mm256_cmp_pd::<_CMP_LE_OQ>(self.0, other.0));
         let high = call!(_mm256_cmp_pd::<_CMP_LE_OQ>(self.1, other.1));
         (call!(_mm256_movemask_pd(low)) | call!(_mm256_movemask_pd(high)) << 4) as u32
+    }
+}
+
+/// The coordinates of four points.
+///
+/// # Safety
+///
+/// `start` points to twelve numbers.
+#[inline(always)]
+unsafe fn unzip_four(start: *const f64) -> [__m256d; 3] {
+    // SAFETY: reads the twelve numbers; features as above.
+    unsafe {
+        let [a, b, c] = [_mm256_loadu_pd(start), _mm256_loadu_pd(start.add(4)), _mm256_loadu_pd(start.add(8))];
+        let x0y0x2y2 = _mm256_permute2f128_pd::<0x30>(a, b);
+        let z0x1z2x3 = _mm256_permute2f128_pd::<0x21>(a, c);
+        let y1z1y3z3 = _mm256_permute2f128_pd::<0x30>(b, c);
+        [
+            _mm256_shuffle_pd::<0b1010>(x0y0x2y2, z0x1z2x3),
+            _mm256_shuffle_pd::<0b0101>(x0y0x2y2, y1z1y3z3),
+            _mm256_shuffle_pd::<0b1010>(z0x1z2x3, y1z1y3z3),
+        ]
     }
 }
 

@@ -13,6 +13,13 @@ pub struct PeerRay {
     tmax: f32,
 }
 
+impl PeerRay {
+    fn bits(&self) -> [u32; 8] {
+        let ([a, b, c], [d, e, f]) = (self.origin, self.direction);
+        [a, b, c, self.tmin, d, e, f, self.tmax].map(f32::to_bits)
+    }
+}
+
 /// Rays in a batch: those of a tile of `gz render`, 16 by 16 pixels.
 pub const BATCH: usize = 256;
 
@@ -32,21 +39,35 @@ impl Default for Scratch {
 
 impl Scratch {
     /// The batch of `rays`, 1 to [`BATCH`]. What they share is told once, as a camera, a directional light or an unbounded ray has it;
-    /// finding that out is part of the work that the bench times. A NaN never counts as shared.
+    /// finding that out is part of the work that the bench times.
     pub fn batch(&mut self, rays: &[PeerRay]) -> RayBatch<'_> {
         let first = rays[0];
-        let (mut origin, mut direction, mut tmin, mut tmax) = (true, true, true, true);
-        let places = self.origins.iter_mut().zip(&mut self.directions).zip(self.tmins.iter_mut().zip(&mut self.tmaxs));
-        for (ray, ((o, d), (t0, t1))) in rays.iter().zip(places) {
+        let mut other = [0; 8];
+        for ray in rays {
             ahead(ray);
-            let [x, y, z] = ray.origin;
-            *o = DVec3::new(x.into(), y.into(), z.into());
-            *d = GzCoord::from_array(ray.direction);
-            (*t0, *t1) = (ray.tmin, ray.tmax);
-            origin &= (x == first.origin[0]) & (y == first.origin[1]) & (z == first.origin[2]);
-            direction &= (d.x == first.direction[0]) & (d.y == first.direction[1]) & (d.z == first.direction[2]);
-            tmin &= *t0 == first.tmin;
-            tmax &= *t1 == first.tmax;
+            for ((other, bits), first) in other.iter_mut().zip(ray.bits()).zip(first.bits()) {
+                *other |= bits ^ first;
+            }
+        }
+        let [origin, tmin, direction, tmax] = [&other[..3], &other[3..4], &other[4..7], &other[7..]].map(|bits| bits.iter().all(|&b| b == 0));
+        if origin {
+            self.origins[0] = DVec3::from_array(first.origin.map(f64::from));
+        } else {
+            for (ray, o) in rays.iter().zip(&mut self.origins) {
+                *o = DVec3::from_array(ray.origin.map(f64::from));
+            }
+        }
+        if direction {
+            self.directions[0] = GzCoord::from_array(first.direction);
+        } else {
+            for (ray, d) in rays.iter().zip(&mut self.directions) {
+                *d = GzCoord::from_array(ray.direction);
+            }
+        }
+        if !tmin || !tmax {
+            for (ray, (t0, t1)) in rays.iter().zip(self.tmins.iter_mut().zip(&mut self.tmaxs)) {
+                (*t0, *t1) = (ray.tmin, ray.tmax);
+            }
         }
         let n = rays.len();
         RayBatch::new(
