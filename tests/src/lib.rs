@@ -3,6 +3,7 @@
 
 pub mod bench;
 pub mod counting;
+pub mod failures;
 pub mod folder;
 pub mod fuzz;
 pub mod hard;
@@ -11,8 +12,10 @@ pub mod judge;
 pub mod model;
 pub mod needs_scenes;
 pub mod needs_time;
+pub mod plain_trees;
 pub mod rendered;
 pub mod report;
 pub mod scenes;
 pub mod truth;
 pub mod verify;
+pub mod z_buffer;

@@ -1,7 +1,9 @@
 //! The values of command-line options, from text.
 
 use crate::accel::{AccelKind, Split};
+use crate::heat::{Effort, Spread};
 use crate::progress::ProgressMode;
+use crate::show::Show;
 use crate::view::View;
 use gz_core::{CameraModel, Kernel, LeavePolicy, Tile};
 use gz_shade::{Antialias, Fresnel};
@@ -33,7 +35,15 @@ const LEAVES: [(&str, LeavePolicy); 6] = [
     ("waechter-binder", LeavePolicy::WaechterBinder),
     ("error-bound", LeavePolicy::ErrorBound),
 ];
-const VIEWS: [(&str, View); 3] = [("t", View::T), ("id", View::Id), ("normal", View::Normal)];
+const VIEWS: [(&str, Show); 6] = [
+    ("t", Show::Hits(View::T)),
+    ("id", Show::Hits(View::Id)),
+    ("normal", Show::Hits(View::Normal)),
+    ("visits", Show::Heat { effort: Effort::Visits, full: None, spread: Spread::Even }),
+    ("tests", Show::Heat { effort: Effort::Tests, full: None, spread: Spread::Even }),
+    ("cells", Show::Cells { level: None }),
+];
+const SPREADS: [(&str, Spread); 2] = [("even", Spread::Even), ("log", Spread::Log)];
 const PROGRESS: [(&str, ProgressMode); 4] =
     [("auto", ProgressMode::Auto), ("plain", ProgressMode::Plain), ("json", ProgressMode::Json), ("none", ProgressMode::None)];
 
@@ -107,9 +117,14 @@ pub fn leave_name(policy: LeavePolicy) -> String {
     }
 }
 
-/// `t`, `id` or `normal`.
-pub(crate) fn view(text: &str) -> Result<View, String> {
+/// What to show in place of colours.
+pub(crate) fn view(text: &str) -> Result<Show, String> {
     named(text, &VIEWS)
+}
+
+/// `even` or `log`.
+pub(crate) fn spread(text: &str) -> Result<Spread, String> {
+    named(text, &SPREADS)
 }
 
 /// `auto`, `plain`, `json` or `none`.

@@ -3,8 +3,9 @@
 use crate::accel::{AccelKind, Split};
 use crate::args;
 use crate::error::AppError;
+use crate::heat::Spread;
 use crate::progress::{ProgressMode, say};
-use crate::view::View;
+use crate::show::Show;
 use crate::{compare, info, job, pixel_report, query, render};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use gz_core::{CameraModel, Kernel, LeavePolicy, Tile};
@@ -120,9 +121,20 @@ pub struct RenderArgs {
     /// keeps the origin's bits. They are in the space in which the camera model traces, under pinhole the world
     #[arg(long, value_name = "FILE")]
     pub rays_out: Option<PathBuf>,
-    /// Show T-values (t), triangles (id) or face normals (normal) in place of colours
+    /// Show in place of colours: T-values (t), triangles (id), face normals (normal); how much work each primary ray is by itself, nodes and
+    /// leaves entered (visits) or triangles looked at (tests); or over the colours the tree's leaves (cells)
     #[arg(long, value_name = "WHAT", value_parser = args::view)]
-    pub view: Option<View>,
+    pub view: Option<Show>,
+    /// For --view visits or tests: the count that has the lightest colour, so that several pictures share one scale; without it, the
+    /// greatest of the picture
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub view_max: Option<u64>,
+    /// For --view visits or tests: colours in even steps (even) or by the logarithm (log), for trees that are far apart
+    #[arg(long, value_name = "HOW", value_parser = args::spread)]
+    pub view_scale: Option<Spread>,
+    /// For --view cells: the cells of this level, and the leaves above it, in place of all leaves
+    #[arg(long, value_name = "N")]
+    pub view_level: Option<usize>,
     /// Print what the scene needs and what each need costs
     #[arg(long)]
     pub explain: bool,
@@ -170,6 +182,9 @@ pub struct PixelArgs {
     /// Ask this as well (brute: every triangle, exactly) and fail when the answers differ
     #[arg(long, value_name = "HOW", value_parser = args::accel)]
     pub compare: Option<AccelKind>,
+    /// Print all of it as JSON, numbers in full
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `gz query`.
@@ -249,6 +264,7 @@ fn print(text: &str) -> Result<(), AppError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::View;
 
     #[test]
     fn options_are_consistent() {
@@ -267,6 +283,6 @@ mod tests {
         assert_eq!(args.scene.leave, Some(LeavePolicy::Identity));
         assert_eq!((args.scene.accel.kernel, args.scene.aa), (Kernel::Plane, Some(Antialias::Samples(16))));
         assert_eq!((args.crop, args.tile), (Some(Tile { x0: 1, y0: 2, x1: 30, y1: 40 }), 8));
-        assert_eq!((args.progress, args.view, args.explain), (ProgressMode::Json, Some(View::Id), true));
+        assert_eq!((args.progress, args.view, args.explain), (ProgressMode::Json, Some(Show::Hits(View::Id)), true));
     }
 }

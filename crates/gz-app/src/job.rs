@@ -3,11 +3,12 @@
 use crate::accel::Accel;
 use crate::cli::{RenderArgs, SceneArgs};
 use crate::error::AppError;
+use crate::heat::Effort;
 use crate::load::{Overrides, expect_scene};
 use crate::new_file::NewFile;
 use crate::output::ImageFormat;
 use crate::progress::ProgressMode;
-use crate::view::View;
+use crate::show::Show;
 use gz_core::Tile;
 use gz_shade::{Antialias, Scene};
 use std::path::{Path, PathBuf};
@@ -43,7 +44,7 @@ pub struct RenderJob {
     /// Where the primary rays go.
     pub rays_out: Option<NewFile>,
     /// What to show in place of colours.
-    pub view: Option<View>,
+    pub show: Option<Show>,
     /// Whether to say what the scene needs.
     pub explain: bool,
 }
@@ -94,7 +95,7 @@ impl RenderJob {
             tile: args.tile,
             crop: args.crop,
             progress: args.progress,
-            view: args.view,
+            show: shown(args, &accel)?,
             explain: args.explain,
         })
     }
@@ -124,6 +125,33 @@ impl RenderJob {
             one_sample(self.tbuffer.is_some(), self.rays_out.is_some())?;
         }
         Ok(area)
+    }
+}
+
+/// What to show in place of colours, with its own options.
+fn shown(args: &RenderArgs, accel: &Accel) -> Result<Option<Show>, AppError> {
+    let refuse = |what: &str| Err(AppError::Usage(what.to_owned()));
+    let is_brute = matches!(accel, Accel::Brute(_));
+    let is_heat = matches!(args.view, Some(Show::Heat { .. }));
+    if !is_heat && args.view_max.is_some() {
+        return refuse("--view-max is the end of a scale: use it with --view visits or tests");
+    }
+    if !is_heat && args.view_scale.is_some() {
+        return refuse("--view-scale is of colours that stand for counts: use it with --view visits or tests");
+    }
+    if !matches!(args.view, Some(Show::Cells { .. })) && args.view_level.is_some() {
+        return refuse("--view-level is a level of cells: use it with --view cells");
+    }
+    match args.view {
+        Some(Show::Heat { effort: Effort::Visits, .. }) if is_brute => {
+            refuse("--view visits: brute force visits no nodes, --view tests counts the triangles that it looks at")
+        }
+        Some(Show::Cells { .. }) if is_brute => refuse("--view cells: brute force has no cells"),
+        Some(Show::Heat { effort, .. }) => {
+            Ok(Some(Show::Heat { effort, full: args.view_max, spread: args.view_scale.unwrap_or_default() }))
+        }
+        Some(Show::Cells { .. }) => Ok(Some(Show::Cells { level: args.view_level })),
+        show => Ok(show),
     }
 }
 

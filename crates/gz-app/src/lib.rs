@@ -3,11 +3,14 @@
 
 pub mod accel;
 pub mod args;
+pub mod cells;
 pub mod cli;
+pub mod color_scale;
 pub mod compare;
 pub mod display;
 pub mod error;
 pub mod explain;
+pub mod heat;
 pub mod hits_file;
 pub mod homework;
 pub mod info;
@@ -20,11 +23,13 @@ pub mod pfm;
 pub mod picture;
 pub mod pixel_report;
 pub mod progress;
+pub mod projection;
 pub mod query;
 pub mod random_lines;
 pub mod rays_file;
 pub mod render;
 pub mod sheet;
+pub mod show;
 pub mod stats;
 pub mod teapot;
 pub mod threads;

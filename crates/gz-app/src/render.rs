@@ -4,13 +4,14 @@ use crate::error::AppError;
 use crate::job::RenderJob;
 use crate::progress::Progress;
 use crate::rays_file::RayFormat;
+use crate::show::{Show, Shown};
 use crate::stats::{Clock, RenderStats};
 use crate::view::trace_hits;
 use crate::{explain, hits_file, load, output, rays_file, threads};
 use gz_core::TileGrid;
 use gz_shade::{SceneNeeds, shade_frame};
 
-/// Does a render job: writes its picture and whatever else was asked for. Returns what `--explain` prints, else nothing.
+/// Does a render job: writes its picture and whatever else was asked for. Returns what is printed: the range of a heat map, what `--explain` tells.
 ///
 /// # Errors
 ///
@@ -42,20 +43,22 @@ fn frame(job: &RenderJob) -> Result<String, AppError> {
 
     // Primary rays -> T-values, where they are asked for by themselves.
     let grid = TileGrid::of(area, job.tile);
-    let hits = (job.tbuffer.is_some() || job.view.is_some()).then(|| trace_hits(&scene, query, &grid));
+    let takes_hits = job.tbuffer.is_some() || job.show.is_some_and(Show::takes_hits);
+    let hits = if takes_hits { trace_hits(&scene, query, &grid) } else { Vec::new() };
 
     // Tile by tile: T-values -> shadow, mirror and glass rays -> colours.
     progress.begin(area.len() as u64);
-    let frame = match (job.view, &hits) {
-        (Some(view), Some(hits)) => view.frame(&scene, hits, &grid),
-        _ => shade_frame(&scene, needs, query, &grid, &|tile| progress.advance(tile)),
+    let shade = || shade_frame(&scene, needs, query, &grid, &|tile| progress.advance(tile));
+    let Shown { frame, code, legend } = match job.show {
+        Some(show) => show.picture(&scene, &built, &grid, &hits, shade),
+        None => Shown { frame: shade(), code: scene.rules.color_code, legend: String::new() },
     };
     clock.lap("trace");
 
     // Colours -> picture.
-    job.output.write(&output::picture(&frame, job.format, scene.rules.color_code)?)?;
-    if let (Some(file), Some(hits)) = (&job.tbuffer, &hits) {
-        file.write(&hits_file::encode(hits))?;
+    job.output.write(&output::picture(&frame, job.format, code)?)?;
+    if let Some(file) = &job.tbuffer {
+        file.write(&hits_file::encode(&hits))?;
     }
     if let Some(file) = &job.rays_out {
         file.write(&rays_file::primary(&scene.camera, &area, RayFormat::of(file.path())))?;
@@ -71,5 +74,5 @@ fn frame(job: &RenderJob) -> Result<String, AppError> {
         file.write(format!("{:#}\n", stats.json()).as_bytes())?;
     }
     progress.finish(&stats.summary(), &stats.json());
-    Ok(if job.explain { explain::explain(&scene, &frame.stats) } else { String::new() })
+    Ok(if job.explain { legend + &explain::explain(&scene, &frame.stats) } else { legend })
 }

@@ -22,6 +22,7 @@ mod midpoint;
 mod params;
 mod slab;
 mod stats;
+mod steps;
 mod visit;
 mod walk;
 
@@ -30,4 +31,5 @@ pub use expect::Expected;
 pub use midpoint::{MidpointTree, Node};
 pub use params::{BuildError, Midpoint};
 pub use stats::TreeStats;
+pub use steps::Step;
 pub use visit::{VisitCount, Visits};

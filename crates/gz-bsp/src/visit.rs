@@ -4,6 +4,8 @@ use gz_core::TriId;
 
 /// Told of each step of a walk.
 pub trait Visits {
+    /// The walk of the paper's tree enters a node or leaf, of this number, between these distances.
+    fn at(&mut self, _number: usize, _enter: f64, _leave: f64) {}
     /// An inner node is entered.
     fn node(&mut self) {}
     /// A leaf is entered.

@@ -22,6 +22,7 @@ impl MidpointTree<'_> {
         if quest.is_beyond(span.min) {
             return false;
         }
+        visits.at(id as usize, span.min, span.max);
         match self.nodes[id as usize] {
             Node::Leaf { first, count, .. } => {
                 visits.leaf();

@@ -3,91 +3,14 @@
 
 use gz_bsp::{BspTree, Midpoint, MidpointTree};
 use gz_core::glam::DVec3;
-use gz_core::kernel::{Closest, is_hit};
-use gz_core::{Bounds, BruteForce, GzCoord, GzRay, Hit, RayQuery, TriBuffer, TriId, leave_surface};
+use gz_core::kernel::is_hit;
+use gz_core::{BruteForce, GzCoord, GzRay, Hit, RayQuery, TriBuffer, TriId, leave_surface};
+use gz_tests::plain_trees::{Ending, Insert, PlainMidpoint, PlainRules};
 
-/// When a triangle joins a half.
-#[derive(Clone, Copy, PartialEq)]
-enum Insert {
-    /// Its box touches it: right.
-    BoxTouches,
-    /// One of its corners lies in it: the paper's first try, which leaves holes.
-    CornerInside,
-}
-
-/// When a walk ends.
-#[derive(Clone, Copy, PartialEq)]
-enum Accept {
-    /// Nothing nearer is possible: right.
-    Nearest,
-    /// The near half has some hit, wherever it lies.
-    FirstFound,
-}
-
-enum Twin {
-    Inner { axis: usize, plane: f32, halves: Box<[Twin; 2]> },
-    Leaf(Vec<TriId>),
-}
-
-fn grow(tris: &TriBuffer, held: Vec<TriId>, bounds: Bounds, level: u32, insert: Insert) -> Twin {
-    if level > 15 || held.len() < 5 {
-        return Twin::Leaf(held);
-    }
-    let axis = [1, 2, 0][level as usize % 3];
-    let plane = bounds.centre()[axis];
-    let half = |upper: bool| {
-        let mut half = bounds;
-        if upper {
-            half.min[axis] = plane;
-        } else {
-            half.max[axis] = plane;
-        }
-        let joins = |tri: &TriId| match insert {
-            Insert::BoxTouches => Bounds::of(*tris.position(*tri)).overlaps(&half),
-            Insert::CornerInside => tris.position(*tri).iter().any(|&corner| half.holds(corner)),
-        };
-        grow(tris, held.iter().copied().filter(joins).collect(), half, level + 1, insert)
-    };
-    Twin::Inner { axis, plane, halves: Box::new([half(false), half(true)]) }
-}
-
-fn walk(twin: &Twin, tris: &TriBuffer, ray: &GzRay, span: (f64, f64), accept: Accept, closest: &mut Closest) {
-    match twin {
-        Twin::Leaf(held) => held.iter().for_each(|&tri| closest.consider(ray, tri, tris.positions())),
-        Twin::Inner { axis, plane, halves } => {
-            let along = f64::from(ray.direction[*axis]);
-            let from_lower = if along == 0.0 { ray.origin[*axis] <= f64::from(*plane) } else { along > 0.0 };
-            let [lower, upper] = &**halves;
-            let (near, far) = if from_lower { (lower, upper) } else { (upper, lower) };
-            if along == 0.0 {
-                return walk(near, tris, ray, span, accept, closest);
-            }
-            let crossing = (f64::from(*plane) - ray.origin[*axis]) / along;
-            let slack = 1e-9 * crossing.abs();
-            if crossing + slack >= span.0 {
-                walk(near, tris, ray, (span.0, span.1.min(crossing + slack)), accept, closest);
-            }
-            let found = closest.distance().is_finite();
-            let ends = match accept {
-                Accept::Nearest => closest.distance() < crossing - slack,
-                Accept::FirstFound => found,
-            };
-            if crossing - slack <= span.1 && !ends {
-                walk(far, tris, ray, (span.0.max(crossing - slack), span.1), accept, closest);
-            }
-        }
-    }
-}
-
-/// Rays on which the twin has another triangle than brute force.
-fn twin_errors(tris: &TriBuffer, rays: &[GzRay], truth: &[Hit], insert: Insert, accept: Accept) -> usize {
-    let twin = grow(tris, (0..tris.len() as TriId).collect(), tris.bounds(), 1, insert);
-    let answer = |ray: &GzRay| {
-        let mut closest = Closest::default();
-        walk(&twin, tris, ray, (f64::from(ray.tmin), f64::from(ray.tmax)), accept, &mut closest);
-        closest.hit(ray, tris.positions())
-    };
-    rays.iter().zip(truth).filter(|(ray, truth)| answer(ray) != **truth).count()
+/// Rays on which the twin has another answer than brute force.
+fn twin_errors(tris: &TriBuffer, rays: &[GzRay], truth: &[Hit], insert: Insert, ending: Ending) -> usize {
+    let twin = PlainMidpoint::build(tris, PlainRules { insert, ending, ..PlainRules::default() });
+    rays.iter().zip(truth).filter(|(ray, truth)| twin.closest_hit(ray) != **truth).count()
 }
 
 /// Rays on which the product's trees differ from brute force.
@@ -109,8 +32,8 @@ fn paper_rays() -> (TriBuffer, Vec<GzRay>, Vec<Hit>) {
 #[test]
 fn listing_a_triangle_only_where_a_corner_lies_leaves_holes() {
     let (tris, rays, truth) = paper_rays();
-    assert_eq!(twin_errors(&tris, &rays, &truth, Insert::BoxTouches, Accept::Nearest), 0);
-    let wrong = twin_errors(&tris, &rays, &truth, Insert::CornerInside, Accept::Nearest);
+    assert_eq!(twin_errors(&tris, &rays, &truth, Insert::BoxTouches, Ending::Padded), 0);
+    let wrong = twin_errors(&tris, &rays, &truth, Insert::CornerInside, Ending::Padded);
     println!("corner in box: {wrong} of {} rays wrong", rays.len());
     assert!(wrong > rays.len() / 100, "{wrong} of {}", rays.len());
     assert_eq!(product_errors(&tris, &rays, &truth), 0);
@@ -119,7 +42,7 @@ fn listing_a_triangle_only_where_a_corner_lies_leaves_holes() {
 #[test]
 fn accepting_the_first_hit_found_in_a_leaf_hides_nearer_ones() {
     let (tris, rays, truth) = paper_rays();
-    let wrong = twin_errors(&tris, &rays, &truth, Insert::BoxTouches, Accept::FirstFound);
+    let wrong = twin_errors(&tris, &rays, &truth, Insert::BoxTouches, Ending::FirstInLeaf);
     println!("first hit found: {wrong} of {} rays wrong", rays.len());
     assert!(wrong > 0, "{wrong} of {}", rays.len());
     assert_eq!(product_errors(&tris, &rays, &truth), 0);

@@ -141,3 +141,23 @@ fn mistakes_on_the_command_line_are_one_line_too() {
     folder.fails("render a.toml --sise 8x8", 2, "unexpected argument '--sise' found; tip: a similar argument exists: '--size'");
     folder.fails("render a.toml --depth 33", 2, "invalid value '33' for '--depth <N>': 33 is not in 0..=32");
 }
+
+#[test]
+fn a_scale_belongs_to_a_heat_map_and_visits_to_a_tree() {
+    let folder = Folder::with_scene("heat-usage");
+    let why = "--view-max is the end of a scale: use it with --view visits or tests";
+    for view in ["", "--view t"] {
+        folder.fails(&format!("{RENDER} {view} --view-max 9"), 2, why);
+    }
+    let why = "--view visits: brute force visits no nodes, --view tests counts the triangles that it looks at";
+    folder.fails(&format!("{RENDER} --accel brute --view visits"), 2, why);
+    assert_eq!(folder.gz(&format!("{RENDER} --view tests --view-max 0")).code, 2);
+    let why = "--view-scale is of colours that stand for counts: use it with --view visits or tests";
+    folder.fails(&format!("{RENDER} --view id --view-scale log"), 2, why);
+    folder.fails(
+        &format!("{RENDER} --view tests --view-level 3"),
+        2,
+        "--view-level is a level of cells: use it with --view cells",
+    );
+    folder.fails(&format!("{RENDER} --view cells --accel brute"), 2, "--view cells: brute force has no cells");
+}

@@ -45,7 +45,7 @@ fn threads_and_tiles_do_not_show_and_a_crop_is_that_part() {
 fn a_crop_is_that_part_in_every_view_of_every_camera() {
     let folder = Folder::with_scene("view-crop");
     for camera in ["pinhole", "homework", "paper", "screen"] {
-        for view in ["t", "id", "normal"] {
+        for view in ["t", "id", "normal", "visits --view-max 30", "tests --view-max 200", "cells"] {
             let options = format!("--camera {camera} --size 48x48 --view {view} --progress none");
             folder.done(&format!("render scene.toml -o whole.png {options}"));
             folder.done(&format!("render scene.toml -o part.png {options} --crop 18,20,30,41"));
@@ -104,6 +104,59 @@ fn views_differ_from_the_picture_and_from_each_other() {
     for (i, a) in files.iter().enumerate() {
         assert!(files[..i].iter().all(|b| a != b), "view {i}");
     }
+}
+
+#[test]
+fn heat_maps_tell_their_range_and_share_a_scale() {
+    let folder = Folder::with_scene("heat");
+    // `nodes and leaves entered: 3 to 71, mean 20.4; ...`
+    let most = |out: &str| -> u64 { out.split(" to ").nth(1).unwrap().split(',').next().unwrap().parse().unwrap() };
+    for (view, accel) in
+        [("visits", "--split sah"), ("visits", "--split midpoint"), ("tests", "--split sah"), ("tests", "--split midpoint")]
+    {
+        let line = format!("render scene.toml -o own.png --size 32x24 --progress none --view {view} {accel}");
+        let out = folder.done(&line).out;
+        let full = most(&out);
+        assert!(full > 0 && out.lines().count() == 1 && out.contains(&format!("to {full}, light yellow\n")), "{out}");
+        assert_eq!(out, folder.done(&format!("{line} --threads 1 --tile 5")).out);
+        // The same scale by its number is the same picture; a longer one is darker; a shorter one is told.
+        let same = folder.read("own.png");
+        folder.done(&format!("{line} --view-max {full}"));
+        assert!(folder.read("own.png") == same, "{line}");
+        folder.done(&format!("{line} --view-max {}", 4 * full));
+        let brightest = picture(&folder, "own.png").pixels().map(|p| p.0[0]).max().unwrap();
+        assert!(brightest < 128, "{line}: {brightest}");
+        assert!(folder.done(&format!("{line} --view-max 1")).out.contains(" pixels are above that\n"));
+    }
+    let log = folder.done("render scene.toml -o log.png --size 32x24 --view tests --view-max 576 --view-scale log").out;
+    assert!(log.contains("; colours by the logarithm from 0, dark blue, to 576"), "{log}");
+    // Every triangle for every ray: 64 segments^2 with the bottom.
+    let out = folder.done("render scene.toml -o brute.png --size 32x24 --accel brute --view tests").out;
+    assert!(out.starts_with("triangles looked at: 576 to 576, mean 576.00; colours from 0, dark blue, to 576"), "{out}");
+}
+
+#[test]
+fn cells_are_drawn_over_the_picture() {
+    let folder = Folder::with_scene("cells");
+    folder.done("render scene.toml -o plain.png --size 64x48");
+    let plain = picture(&folder, "plain.png");
+    // How many there are to draw: leaves as `gz info --tree` counts them, and levels of a binary tree.
+    for (accel, level, drawn) in [
+        ("--split midpoint --max-depth 3 --min-size 0", "", "8 leaves drawn\n"),
+        ("--split midpoint --max-depth 3 --min-size 0", "--view-level 1", "1 cells of level 1 and leaves above it drawn\n"),
+        ("--split midpoint --max-depth 3 --min-size 0", "--view-level 3", "4 cells of level 3 and leaves above it drawn\n"),
+        ("--split sah", "--view-level 1", "8 cells of level 1 and leaves above it drawn\n"),
+    ] {
+        let out = folder.done(&format!("render scene.toml -o cells.png --size 64x48 --view cells {accel} {level}")).out;
+        assert_eq!(out, drawn, "{accel} {level}");
+        let cells = picture(&folder, "cells.png");
+        let lighter = cells.pixels().zip(plain.pixels()).filter(|(a, b)| a.0.iter().zip(b.0).any(|(&a, b)| a > b)).count();
+        assert!((40..1500).contains(&lighter), "{accel} {level}: {lighter} pixels are lighter, under lines");
+    }
+    let tree = folder.done("info scene.toml --tree").out;
+    let out = folder.done("render scene.toml -o cells.png --size 64x48 --view cells").out;
+    let leaves = out.split(' ').next().unwrap();
+    assert!(tree.contains(&format!("  leaves     {leaves}, 0 empty")), "{out}{tree}");
 }
 
 #[test]
@@ -203,9 +256,61 @@ fn a_pixel_and_a_scene_are_explained() {
     for part in ["visited    ", " tests in f64", "ambient adds [", "light 0 adds [", "own colour ["] {
         assert!(out.contains(part), "{part} in {out}");
     }
+    for part in ["compare    brute has the same triangle, T, u and v, to the bit\n", "walk       ", ", of the pixel [1, 1, 1]\n"]
+    {
+        assert!(out.contains(part), "{part} in {out}");
+    }
     assert!(folder.done("pixel scene.toml 0 0 --size 32x24 --kernel plane --compare brute").out.contains("hit        nothing"));
     let out = folder.done("info scene.toml --size 32x24").out;
     assert!(out.contains("picture    32x24, camera pinhole\n") && out.contains("lights     1\n"), "{out}");
+}
+
+#[test]
+fn a_pixel_tells_its_walk_by_each_way_to_answer() {
+    let folder = Folder::with_scene("pixel-walk");
+    let told = |options: &str| folder.done(&format!("pixel scene.toml 16 14 --size 32x24 {options}")).out;
+    for options in ["", "--split midpoint", "--split midpoint --max-depth 2"] {
+        let out = told(options);
+        // The walk is told as it is counted.
+        let walk: Vec<&str> = out.lines().skip_while(|line| !line.starts_with("walk ")).skip(1).collect();
+        let steps = walk.iter().take_while(|line| line.starts_with("  ")).filter(|line| !line.starts_with("    "));
+        let (leaves, nodes): (Vec<&&str>, Vec<&&str>) = steps.partition(|line| line.starts_with("  leaf"));
+        assert!(out.contains(&format!("visited    {} nodes, {} leaves", nodes.len(), leaves.len())), "{options}: {out}");
+        // What is hit first was found on it, and the first rung differs: the paper's walk has no f32.
+        let hit = out.lines().find_map(|line| line.strip_prefix("hit        triangle ")).unwrap().split(' ').next().unwrap();
+        assert!(walk.iter().any(|line| line.starts_with(&format!("    triangle {hit} hit at T = "))), "{options}: {out}");
+        assert_eq!(out.contains("by f32"), options.is_empty(), "{options}: {out}");
+    }
+    let brute = told("--accel brute");
+    assert!(brute.contains("visited    576 triangles") && brute.contains("tested     ") && !brute.contains("walk "), "{brute}");
+    assert!(told("--kernel woop").contains(" missed\n    triangle "), "a rounded test proves nothing");
+}
+
+#[test]
+fn a_pixel_is_told_to_programs_too() {
+    let folder = Folder::with_scene("pixel-json");
+    let told = |options: &str| -> Value {
+        serde_json::from_str(&folder.done(&format!("pixel scene.toml 16 14 --size 32x24 --json {options}")).out).unwrap()
+    };
+    let (pixel, brute) = (told("--compare brute"), told("--accel brute"));
+    assert_eq!((&pixel["hit"], &pixel["compare"]["same_bits"]), (&brute["hit"], &Value::Bool(true)));
+    assert_eq!((&pixel["on_ray"], &pixel["color"], &pixel["bytes"]), (&brute["on_ray"], &brute["color"], &brute["bytes"]));
+    assert_eq!(pixel["on_ray"][0], pixel["hit"]);
+    let (walk, visits) = (pixel["walk"].as_array().unwrap(), &pixel["visits"]);
+    assert_eq!(walk.len() as u64, visits["nodes"].as_u64().unwrap() + visits["leaves"].as_u64().unwrap());
+    assert_eq!((brute["tested"].as_array().unwrap().len(), brute["walk"].as_array().unwrap().len()), (576, 0));
+    // One ray, its parts sum to its colour.
+    let node = &pixel["rays"][0];
+    assert_eq!(
+        (&node["kind"], &node["parent"], &node["share"]),
+        (&Value::from("primary"), &Value::Null, &serde_json::json!([1.0, 1.0, 1.0]))
+    );
+    let sum = |k: usize| node["ambient"][k].as_f64().unwrap() + node["lights"][0]["color"][k].as_f64().unwrap();
+    assert!((0..3).all(|k| (sum(k) - node["local"][k].as_f64().unwrap()).abs() < 1e-6), "{node}");
+    // The pixel that is written.
+    folder.done("render scene.toml -o a.png --size 32x24");
+    let pixel_written = picture(&folder, "a.png").get_pixel(16, 14).0;
+    assert_eq!(pixel["bytes"], serde_json::json!(pixel_written));
 }
 
 #[test]

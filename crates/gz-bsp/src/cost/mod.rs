@@ -11,6 +11,7 @@ mod clip;
 mod slabs;
 mod split;
 mod stats;
+mod steps;
 mod tight;
 mod together;
 mod walk;

@@ -81,6 +81,11 @@ impl Expected {
 }
 
 impl BspTree<'_> {
+    /// Shows each cell in use, in no particular order: its box, its level (that of the root's eight cells is 1), and whether it is a leaf.
+    pub fn visit_cells(&self, mut see: impl FnMut(&Bounds, usize, bool)) {
+        self.each_cell(|bounds, depth, target| see(bounds, depth, matches!(target, Target::Groups { .. })));
+    }
+
     /// Shows each cell in use: its box, the depth of the node that it is of (the root's is 1), and what is in it.
     fn each_cell(&self, mut see: impl FnMut(&Bounds, usize, Target)) {
         let mut open = vec![(0, 1)];

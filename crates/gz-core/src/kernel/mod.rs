@@ -15,6 +15,7 @@ mod plain;
 mod plane;
 mod pluecker;
 mod quotient;
+mod rung;
 mod solution;
 mod space;
 mod spans;
@@ -29,6 +30,7 @@ pub use group::{Candidates, TriGroup};
 pub use nearest::{Asked, Nearest};
 pub use order::{Closest, is_hit};
 pub use plain::plain;
+pub use rung::{Rung, rung};
 pub use space::FilterSpace;
 pub use spans::Spans;
 
