@@ -7,6 +7,8 @@ use crate::report::picture::Picture;
 use crate::report::run::Run;
 use crate::report::section::{Chapter, Measured, Section};
 use crate::report::table::{Column, Kind, Row, Table};
+use gz_app::accel::Accel;
+use gz_app::cells::{cells as cells_of, draw};
 use gz_app::error::AppError;
 use gz_app::load::Overrides;
 use gz_app::view::trace_hits;
@@ -27,7 +29,8 @@ pub(in crate::report) const SECTION: Section = Section {
     id: "cells",
     chapter: Chapter::Tree,
     title: "Cells on the scene",
-    how: "The paper's scene with each point painted by the leaf that holds it, MIN_SIZE 5.",
+    how: "The paper's scene with each point painted by the leaf that holds it, MIN_SIZE 5; then the edges of cells of one level, as <code>gz \
+          render --view cells</code> draws them.",
     columns: &COLUMNS,
     charts: &[],
     labels: |_| Ok(DEPTHS.map(|depth| depth.to_string()).to_vec()),
@@ -107,6 +110,27 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
             }
         };
         measured.pictures.push(Picture::drawing(&format!("depth{max_depth}"), caption, size, size, &srgb(&colors))?);
+    }
+    // The same as lines: every edge of every cell of a level.
+    let lines: [(&str, Accel, Option<usize>, &str); 2] = [
+        (
+            "lines-midpoint",
+            Accel::Midpoint(Midpoint::default()),
+            Some(9),
+            "Cells of level 9. The paper's tree halves boxes, whatever is in them. Lines behind a surface are faint.",
+        ),
+        (
+            "lines-tuned",
+            Accel::Bsp,
+            Some(2),
+            "Cells of level 2, self-tuned. Cut where it pays, eight cells a node, each shrunk to what it holds.",
+        ),
+    ];
+    for (name, accel, level, caption) in lines {
+        let built = accel.build(&scene.tris)?;
+        let mut drawn = frame.clone();
+        draw(&scene, &cells_of(&built, level), &mut drawn, &hits);
+        measured.pictures.push(Picture::drawing(name, caption, size, size, &srgb(&drawn.colors))?);
     }
     Ok(measured)
 }

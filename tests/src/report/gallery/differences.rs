@@ -9,7 +9,7 @@ use crate::report::section::{Chapter, Measured, Section};
 use crate::report::table::{Column, Kind, Row, Table};
 use gz_app::error::AppError;
 use gz_app::load::Overrides;
-use gz_core::{GzColor, LeavePolicy};
+use gz_core::GzColor;
 use gz_shade::{Antialias, Fresnel};
 
 const COLUMNS: [Column; 5] = [
@@ -43,7 +43,7 @@ struct Pair {
     gain: f32,
 }
 
-fn pairs() -> [Pair; 4] {
+fn pairs() -> [Pair; 3] {
     let one = Overrides { aa: Some(Antialias::None), ..Overrides::NONE };
     [
         Pair {
@@ -75,18 +75,6 @@ fn pairs() -> [Pair; 4] {
                 (one, "Fresnel. The exact equations: hardly a change at index 1.5."),
             ],
             gain: 8.0,
-        },
-        Pair {
-            name: "leaving",
-            scene: "shadows",
-            sides: [
-                (
-                    Overrides { leave: Some(LeavePolicy::Bare), ..one },
-                    "From the f32 hit. Every second shadow ray meets the surface that it leaves.",
-                ),
-                (one, "From a proved side. None does."),
-            ],
-            gain: 1.0,
         },
     ]
 }

@@ -10,7 +10,7 @@ use crate::report::section::{Chapter, Measured, Section};
 use crate::report::table::{Column, Kind, Row, Table};
 use gz_app::accel::Accel;
 use gz_app::error::AppError;
-use gz_app::heat::{Effort, HeatMap};
+use gz_app::heat::{Effort, HeatMap, HeatScale, Spread};
 use gz_app::load::Overrides;
 use gz_bsp::Midpoint;
 use gz_core::{Kernel, TileGrid};
@@ -34,12 +34,15 @@ pub(in crate::report) const SECTION: Section = Section {
           same for any scene. A node of the self-tuned tree has eight cells, and its groups count eight tests each.",
     columns: &COLUMNS,
     charts: &[],
-    labels: |_| Ok(EFFORTS.iter().flat_map(|(_, effort, _)| trees().map(move |(tree, ..)| format!("{tree}, {effort}"))).collect()),
+    labels: |_| {
+        Ok(EFFORTS.iter().flat_map(|(_, effort, _)| trees().map(move |(tree, ..)| format!("{tree}, {effort}"))).collect())
+    },
     measure,
     says,
 };
 
-const EFFORTS: [(Effort, &str, &str); 2] = [(Effort::Visits, "nodes and leaves", "visits"), (Effort::Tests, "triangles", "tests")];
+const EFFORTS: [(Effort, &str, &str); 2] =
+    [(Effort::Visits, "nodes and leaves", "visits"), (Effort::Tests, "triangles", "tests")];
 
 fn trees() -> impl Iterator<Item = (&'static str, Accel, &'static str)> {
     [
@@ -68,7 +71,7 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
             let caption = format!("{tree}. {counted} a pixel: {} to {}, {:.1} on average.", map.least(), map.most(), map.mean());
             // Brute force visits no node: a black picture shows nothing.
             if map.most() > 0 {
-                let frame = map.frame(full);
+                let frame = map.frame(HeatScale { full, spread: Spread::Even });
                 measured.pictures.push(Picture::drawing(&format!("{word}-{name}"), &caption, size, size, &srgb(&frame.colors))?);
             }
         }

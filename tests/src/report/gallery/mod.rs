@@ -3,11 +3,15 @@
 mod buffers;
 mod cells;
 mod differences;
+mod failures;
+mod heat;
 mod steps;
 
 pub(super) use buffers::SECTION as BUFFERS;
 pub(super) use cells::SECTION as CELLS;
 pub(super) use differences::SECTION as DIFFERENCES;
+pub(super) use failures::SECTION as FAILURES;
+pub(super) use heat::SECTION as HEAT;
 pub(super) use steps::SECTION as STEPS;
 
 use gz_core::GzColor;

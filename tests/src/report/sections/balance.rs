@@ -64,7 +64,9 @@ pub(super) const SECTION: Section = Section {
 };
 
 fn midpoints() -> impl Iterator<Item = (String, PlainRules)> {
-    [5, 10, 15, 20].into_iter().map(|max_depth| (format!("midpoint ({max_depth}, 5)"), PlainRules { max_depth, ..PlainRules::default() }))
+    [5, 10, 15, 20]
+        .into_iter()
+        .map(|max_depth| (format!("midpoint ({max_depth}, 5)"), PlainRules { max_depth, ..PlainRules::default() }))
 }
 
 fn polygons() -> impl Iterator<Item = (String, PolygonRules)> {

@@ -1,5 +1,6 @@
 //! What the report measures.
 
+mod balance;
 mod kernels;
 mod leaving;
 mod model;
@@ -10,6 +11,7 @@ mod sampling;
 mod scale;
 mod t_error;
 mod tree;
+mod walks;
 
 use super::gallery;
 use super::section::Section;
@@ -19,12 +21,16 @@ pub(super) fn all(peers: bool) -> Vec<Section> {
     let mut all = vec![
         gallery::STEPS,
         gallery::BUFFERS,
+        gallery::FAILURES,
         kernels::SECTION,
         t_error::DISTANCE,
         t_error::ASPECT,
         leaving::SECTION,
         tree::SECTION,
+        walks::SECTION,
+        balance::SECTION,
         gallery::CELLS,
+        gallery::HEAT,
         scale::SECTION,
     ];
     all.extend(peers.then_some(peers::SECTION));

@@ -93,10 +93,8 @@ fn contenders() -> Vec<Contender> {
         ("corners in boxes", Insert::CornerInside, Ending::Padded, Kernel::Certified),
     ];
     let of = |(name, insert, ending, kernel)| {
-        [5, 10, 15, 20].map(|max_depth| Contender {
-            name,
-            rules: Some(PlainRules { max_depth, min_size: 5, insert, ending, kernel }),
-        })
+        [5, 10, 15, 20]
+            .map(|max_depth| Contender { name, rules: Some(PlainRules { max_depth, min_size: 5, insert, ending, kernel }) })
     };
     walks.into_iter().flat_map(of).chain([Contender { name: "self-tuned", rules: None }]).collect()
 }
@@ -146,7 +144,8 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
     run.progress.say("  walks: errors counted, now times");
     let times = gz_app::threads::with(1, || times(run))?;
     let settings = format!("{}; {blocks} blocks of {RAYS} rays in {} classes; 1 thread", run.mode.name(), Class::ALL.len());
-    let rows = contenders().iter().zip(&errors).zip(&times).map(|((it, found), &ns)| {
+    let contenders = contenders();
+    let rows = contenders.iter().zip(&errors).zip(&times).map(|((it, found), &ns)| {
         let n = found.rays;
         let wrong = found.wrong();
         let cells = cells![
@@ -168,7 +167,10 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
 fn says(table: &Table) -> String {
     let mut numbers = Numbers::default();
     let rate = |walk: &'static str| {
-        (0..table.rows.len()).filter(|&row| table.words(row, "walk") == walk).filter_map(|row| table.number(row, "wrong_per_1e9")).fold(0.0, f64::max)
+        (0..table.rows.len())
+            .filter(|&row| table.words(row, "walk") == walk)
+            .filter_map(|row| table.number(row, "wrong_per_1e9"))
+            .fold(0.0, f64::max)
     };
     let padded = if rate("padded") + rate("self-tuned") == 0.0 {
         "Padded, the same walk agrees with brute force on every ray, and so does the tree that tunes itself."
