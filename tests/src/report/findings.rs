@@ -71,12 +71,12 @@ pub(super) fn all(sections: &[Filled]) -> Vec<Finding> {
     [accuracy, setting, paper].into_iter().flatten().collect()
 }
 
-/// `a` times as long, or the other way round.
-fn times_as_long(numbers: &mut Numbers, name: &str, ratio: f64, from: &str) -> String {
+/// `ratio` times as long as `what`, or a share of its time.
+fn times_as_long(numbers: &mut Numbers, name: &str, ratio: f64, from: &str, what: &str) -> String {
     if ratio >= 1.0 {
-        format!("{} times as long", numbers.say(name, ratio, from, ""))
+        format!("{} times as long as {what}", numbers.say(name, ratio, from, ""))
     } else {
-        format!("{} of the time", numbers.say(name, 100.0 * ratio, from, " %"))
+        format!("{} of the time of {what}", numbers.say(name, 100.0 * ratio, from, " %"))
     }
 }
 
@@ -101,7 +101,10 @@ fn accuracy(table: &Table) -> Option<Finding> {
     let ratio = of(best, "ns_per_ray")? / of(fastest, "ns_per_ray")?;
     let portable = of(scalar, "ns_per_ray")? / of(plane, "ns_per_ray")?;
     let one_by_one = of(table.row("test", "ours, one at a time")?, "ns_per_ray")? / of(plane, "ns_per_ray")?;
-    let big = times_as_long(&mut numbers, "ours over fastest", ratio, "kernels: ns_per_ray");
+    let big = match ratio >= 1.0 {
+        true => format!("{} times as long", numbers.say("ours over fastest", ratio, "kernels: ns_per_ray", "")),
+        false => format!("{} of the time", numbers.say("ours over fastest", 100.0 * ratio, "kernels: ns_per_ray", " %")),
+    };
     let headline = match (ours_wrong == 0.0, ratio < 1.0) {
         (true, true) => "Being right every time need not cost time: behind a filter the exact test is the fastest here",
         (true, false) => "Being right every time has a price, and this is it",
@@ -109,14 +112,19 @@ fn accuracy(table: &Table) -> Option<Finding> {
     };
     let wrong_of = |row: usize| of(row, "wrong_per_1e9").unwrap_or(f64::NAN) / 1e9;
     let text = format!(
-        "Triangle by triangle the proof in f64 takes {} as the paper's test, which is the price. But a filter in f32 that only has to reject may be \
-         coarse and eight lanes wide, and the proof then sees the few triangles that are left: brute force takes {} as the fastest plain test \
-         that rounds ({}), and {} as the paper's without any vector instructions of this processor. In {} hard rays it was wrong {} times. That \
-         fastest test is wrong on {} of them, and the best of those that round ({}) still on one in {}.",
-        times_as_long(&mut numbers, "one by one over plane", one_by_one, "kernels: ns_per_ray"),
-        times_as_long(&mut numbers, "ours over fastest", ratio, "kernels: ns_per_ray"),
-        escape(table.words(fastest, "test")),
-        times_as_long(&mut numbers, "portable over plane", portable, "kernels: ns_per_ray"),
+        "Triangle by triangle the proof in f64 takes {}. Behind a filter in f32, which only has to reject and so may be coarse and eight lanes \
+         wide, the proof sees the few triangles that are left: brute force then takes {}, and {} even without vector instructions of this \
+         processor. In {} hard rays it was wrong {} times. That fastest plain test is wrong on {} of them, and the best of those that round \
+         ({}) still on one in {}.",
+        times_as_long(&mut numbers, "one by one over plane", one_by_one, "kernels: ns_per_ray", "the paper's test in f32"),
+        times_as_long(
+            &mut numbers,
+            "ours over fastest",
+            ratio,
+            "kernels: ns_per_ray",
+            &format!("the fastest plain test that rounds ({})", escape(table.words(fastest, "test")))
+        ),
+        times_as_long(&mut numbers, "portable over plane", portable, "kernels: ns_per_ray", "the paper's"),
         numbers.count("hard rays", n, "kernels: n"),
         numbers.count("ours wrong", ours_wrong, "kernels: wrong"),
         numbers.say("fastest wrong", 100.0 * wrong_of(fastest), "kernels: wrong_per_1e9", " %"),
@@ -151,16 +159,32 @@ fn setting(table: &Table) -> Option<Finding> {
         true => "Choose no setting: the tree that tunes itself beats the whole grid",
         false => "Set MAX_DEPTH and MIN_SIZE by hand: the best of the grid beats the tree that tunes itself",
     };
-    let walk = match fewer > 1.0 {
-        true => format!(
-            "It looks at {} times as many triangles a ray, eight at a time, so its planes do not explain that: the walk, which takes 64 rays \
-             along and filters groups of eight, does.",
+    let walk = match (fewer > 1.0, ratio > 1.0) {
+        (true, true) => format!(
+            "It looks at {} times as many triangles a ray, so fewer tests do not explain that: its walk does, which takes 64 rays along and \
+             filters eight triangles at a time.",
             numbers.say("triangles", fewer, "tree: tests_per_ray", "")
         ),
-        false => format!(
-            "It looks at {} of the triangles a ray.",
-            numbers.say("triangles", 100.0 * fewer, "tree: tests_per_ray", " %")
-        ),
+        (true, false) => {
+            format!("It looks at {} times as many triangles a ray.", numbers.say("triangles", fewer, "tree: tests_per_ray", ""))
+        }
+        (false, _) => {
+            format!(
+                "It looks at {} of the triangles a ray.",
+                numbers.say("triangles", 100.0 * fewer, "tree: tests_per_ray", " %")
+            )
+        }
+    };
+    let least = of(best, "trace_ms")?;
+    let close: Vec<&str> = (0..table.rows.len())
+        .filter(|&row| row != best && of(row, "max_depth").is_some() && of(row, "trace_ms").is_some_and(|ms| ms < 1.15 * least))
+        .map(|row| table.words(row, "tree"))
+        .collect();
+    let by_hand = match close.is_empty() {
+        true => format!("By hand, take {}: nothing else comes near it.", escape(table.words(best, "tree"))),
+        false => {
+            format!("By hand, take {}; {} come within a seventh of it.", escape(table.words(best, "tree")), close.join(", "))
+        }
     };
     let same_best = if best == paper {
         ", the paper's own choice".to_owned()
@@ -169,7 +193,7 @@ fn setting(table: &Table) -> Option<Finding> {
     };
     let text = format!(
         "The fastest of 36 settings on the paper's scene is {} with {} ms{same_best}. The tree that tunes itself takes {} ms with {} of its \
-         memory, {} times as fast as the paper's brute force. {walk} By hand: let MAX_DEPTH be 12 or more, then keep MIN_SIZE small.",
+         memory, {} times as fast as the paper's brute force. {walk} {by_hand}",
         escape(table.words(best, "tree")),
         numbers.say("best", of(best, "trace_ms")?, "tree: trace_ms", ""),
         numbers.say("tuned", of(tuned, "trace_ms")?, "tree: trace_ms", ""),
@@ -213,7 +237,13 @@ fn paper(kernels: &Table, leaving: &Table, tree: &Table) -> Option<Finding> {
             format!("its fastest, (15, 5), takes {behind} times as long as the best of the grid")
         }
     };
-    let headline = format!("{verdict_tree}; its test and its cure for stipple were not");
+    let verdict_rest = match (plane > 0.0, identity > 0.0) {
+        (true, true) => "its test and its cure for stipple were not",
+        (true, false) => "its test was not",
+        (false, true) => "its cure for stipple was not",
+        (false, false) => "its test and its cure held here as well",
+    };
+    let headline = format!("{verdict_tree}; {verdict_rest}");
     let text = format!(
         "The paper's test gives a wrong answer on so many hard rays, the {} of {} tests that round. Skipping the own triangle takes the wrong \
          shadow answers of the bare hit point from {} in a million hard cases down to {}, and not to none: neighbours in the same plane still \

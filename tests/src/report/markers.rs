@@ -15,8 +15,15 @@ struct Place {
 }
 
 /// Where tables stand.
-const PLACES: [Place; 2] = [
+const PLACES: [Place; 5] = [
     Place { file: "README.md", section: "kernels", columns: &["test", "ns_per_ray", "wrong_per_1e9"] },
+    Place { file: "docs/REPORT.md", section: "walks", columns: &["walk", "setting", "ns_per_ray", "wrong_per_1e9"] },
+    Place {
+        file: "docs/REPORT.md",
+        section: "balance",
+        columns: &["tree", "balance", "empty", "copies", "tests_per_ray", "ns_per_ray"],
+    },
+    Place { file: "docs/REPORT.md", section: "model", columns: &["scene", "approximation", "rmse", "saved"] },
     Place { file: "docs/REPORT.md", section: "leaving", columns: &["policy", "ns_per_ray", "wrong_per_1e6", "acne", "leaks"] },
 ];
 

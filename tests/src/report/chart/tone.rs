@@ -12,10 +12,10 @@ const OTHERS: [&str; 12] = [
 
 /// The colour of the series `name`, the `k`-th of its chart.
 pub fn tone(name: &str, k: usize) -> &'static str {
-    let is = |words: &[&str]| words.iter().any(|word| name.starts_with(word));
-    if is(&["ours", "self-tuned", "certified", "exact"]) {
+    let begins = |words: &[&str]| words.iter().any(|word| name.starts_with(word));
+    if begins(&["ours", "self-tuned", "certified", "exact"]) {
         OURS
-    } else if is(&["plane", "paper", "identity", "midpoint"]) {
+    } else if ["plane", "identity"].contains(&name) || begins(&["paper", "midpoint"]) {
         PAPER
     } else {
         OTHERS[fixed(name).unwrap_or(k) % OTHERS.len()]

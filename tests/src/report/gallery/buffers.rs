@@ -29,7 +29,7 @@ pub(in crate::report) const SECTION: Section = Section {
     title: "Z and T of one view",
     how: "A teapot on a floor through the homework's camera. Z: scan conversion as in the homework, in f32, screen z interpolated along edges \
           and rows, the least kept. T: a ray through each pixel, the least distance kept. Below, what the T-value buffer of the scene \
-          <code>plain</code> holds, as <code>gz render --view t</code>, <code>id</code> and <code>normal</code> show it.",
+          <code>paper-reflection</code> holds, as <code>gz render --view t</code>, <code>id</code> and <code>normal</code> show it.",
     columns: &COLUMNS,
     charts: &[],
     labels: |_| Ok(["Z-buffer", "T-value buffer"].map(str::to_owned).to_vec()),
@@ -56,8 +56,8 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
     };
     let rows = vec![row("Z-buffer", only_z, depths_z), row("T-value buffer", only_t, depths_t)];
 
-    let (width, height) = run.size((16, 12), (300, 225), (480, 360));
-    let (scene, _) = placed("plain", &sized(width, height))?;
+    let (width, height) = run.size((16, 16), (256, 256), (512, 512));
+    let (scene, _) = placed("paper-reflection", &sized(width, height))?;
     let grid = TileGrid::whole(width, height, 32);
     let hits = trace_hits(&scene, &BspTree::build(&scene.tris), &grid);
     let by_view = |name: &str, caption: &str, view: View| {
@@ -69,8 +69,7 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
     let pictures = vec![
         shot(
             "z.before",
-            "Z, by scan conversion. Left, the homework's buffer: screen z crowds towards its far end, so that floor and pot are nearly one \
-             grey, and f32 tells few depths apart there.",
+            "Z, by scan conversion. Left, the homework's buffer: screen z crowds towards its far end, where f32 tells few depths apart.",
             &view.z_shot(),
         )?,
         shot(
@@ -83,9 +82,13 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
             "Beside it where they differ: grey is the same triangle, yellow another, red only Z, blue only T.",
             &view.difference_shot(),
         )?,
-        by_view("t", "T-values. White where the scene's box begins, dark where it ends.", View::T)?,
+        by_view("t", "T-values. White where the scene's box begins, dark where it ends; black is no hit.", View::T)?,
         by_view("ids", "Which triangle. Each number in a colour of its own.", View::Id)?,
-        by_view("normals", "Which way it faces. Face normals as colours: what shading has to smooth over.", View::Normal)?,
+        by_view(
+            "normals",
+            "Which way it faces. Face normals as colours: what shading has to smooth over. The mirror behind is one.",
+            View::Normal,
+        )?,
     ];
     Ok(Measured { rows, pictures })
 }

@@ -103,8 +103,8 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
         let cells = cells![max_depth.to_string(), leaves, seen.len(), most];
         measured.rows.push(Row { cells, n: hits.len() as u64, settings: format!("{}; {size}x{size}", run.mode.name()) });
         let caption = match max_depth {
-            5 => "MAX_DEPTH 5. A few large cells; all of the pot lies in a handful, each with hundreds of triangles.",
-            10 => "MAX_DEPTH 10. The pot is cut into blocks, and so is the empty plane beside it, which needs no cut.",
+            5 => "MAX_DEPTH 5. A few large cells, all of the pot in a handful.",
+            10 => "MAX_DEPTH 10. The pot is cut into blocks; where fewer than five triangles are left, cutting has stopped.",
             _ => {
                 "MAX_DEPTH 15. Cells the size of a patch on the pot; the plane's two triangles are listed in every cell they cross."
             }
@@ -116,8 +116,8 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
         (
             "lines-midpoint",
             Accel::Midpoint(Midpoint::default()),
-            Some(9),
-            "Cells of level 9. The paper's tree halves boxes, whatever is in them. Lines behind a surface are faint.",
+            Some(7),
+            "Cells of level 7. The paper's tree halves boxes, whatever is in them. Lines behind a surface are faint.",
         ),
         (
             "lines-tuned",

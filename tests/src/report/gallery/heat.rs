@@ -29,9 +29,9 @@ pub(in crate::report) const SECTION: Section = Section {
     id: "heat",
     chapter: Chapter::Tree,
     title: "Where the work is",
-    how: "Every primary ray of the paper's scene, sent by itself, and what it takes: dark blue is none, light yellow the most of the three trees \
-          (for tests: of brute force cut at the most of the trees). <code>gz render --view visits</code> and <code>--view tests</code> draw the \
-          same for any scene. A node of the self-tuned tree has eight cells, and its groups count eight tests each.",
+    how: "Every primary ray of the paper's scene, sent by itself, and what it takes: dark blue is none, light yellow the most of the two trees, \
+          evenly in the logarithm between; brute force is off the scale. <code>gz render --view tests</code> and <code>--view visits</code> draw \
+          the same for any scene. A node of the self-tuned tree has eight cells, and its groups count eight tests each.",
     columns: &COLUMNS,
     charts: &[],
     labels: |_| {
@@ -42,7 +42,7 @@ pub(in crate::report) const SECTION: Section = Section {
 };
 
 const EFFORTS: [(Effort, &str, &str); 2] =
-    [(Effort::Visits, "nodes and leaves", "visits"), (Effort::Tests, "triangles", "tests")];
+    [(Effort::Tests, "triangles", "tests"), (Effort::Visits, "nodes and leaves", "visits")];
 
 fn trees() -> impl Iterator<Item = (&'static str, Accel, &'static str)> {
     [
@@ -71,7 +71,7 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
             let caption = format!("{tree}. {counted} a pixel: {} to {}, {:.1} on average.", map.least(), map.most(), map.mean());
             // Brute force visits no node: a black picture shows nothing.
             if map.most() > 0 {
-                let frame = map.frame(HeatScale { full, spread: Spread::Even });
+                let frame = map.frame(HeatScale { full, spread: Spread::Log });
                 measured.pictures.push(Picture::drawing(&format!("{word}-{name}"), &caption, size, size, &srgb(&frame.colors))?);
             }
         }

@@ -58,7 +58,7 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
     for (name, quick, full, caption) in PICTURES {
         let width = run.size(16, quick, full);
         let native = crate::report::gallery::buffers::native(name)?;
-        let samples = run.size(1, 4, 16);
+        let samples = run.size(1, 3, 16);
         // The paper has one sample a pixel, and its camera one size.
         let aa = if name.starts_with("paper") { Antialias::None } else { Antialias::Samples(samples) };
         let size = (width, (width * native.1).div_ceil(native.0));

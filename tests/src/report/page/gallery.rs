@@ -7,7 +7,7 @@ use crate::report::picture::Picture;
 /// The pictures. Those called `x.before` and `x.after`, and `x.difference` if there is one, are shown together.
 pub(super) fn gallery(section: &str, pictures: &[Picture]) -> String {
     let part = |group: &str, side: &str| pictures.iter().find(|it| it.name == format!("{group}.{side}"));
-    let (mut html, mut open) = (String::new(), false);
+    let (mut html, mut open) = (String::new(), "");
     for picture in pictures {
         // The picture that opens the page is there already.
         if (section, picture.name.as_str()) == super::OPENING {
@@ -15,24 +15,37 @@ pub(super) fn gallery(section: &str, pictures: &[Picture]) -> String {
         }
         match picture.name.rsplit_once('.') {
             None => {
-                if !open {
-                    html += "<div class=\"shots\">\n";
-                    open = true;
-                }
+                enter(&mut html, &mut open, "shots");
                 html += &single(picture);
             }
             Some((group, "before")) => {
-                if std::mem::take(&mut open) {
-                    html += "</div>\n";
-                }
+                let difference = part(group, "difference");
+                // Without a difference there is room for two beside each other.
+                let box_class = if difference.is_some() { "" } else { "twins" };
+                enter(&mut html, &mut open, box_class);
                 if let Some(after) = part(group, "after") {
-                    html += &pair(picture, after, part(group, "difference"));
+                    html += &pair(picture, after, difference);
                 }
             }
             Some(_) => {}
         }
     }
-    if open { html + "</div>\n" } else { html }
+    enter(&mut html, &mut open, "");
+    html
+}
+
+/// Closes the box that is open and opens that of another class, none for an empty one; nothing where it is the same.
+fn enter(html: &mut String, open: &mut &'static str, class: &'static str) {
+    if *open == class {
+        return;
+    }
+    if !open.is_empty() {
+        *html += "</div>\n";
+    }
+    if !class.is_empty() {
+        *html += &format!("<div class=\"{class}\">\n");
+    }
+    *open = class;
 }
 
 fn single(picture: &Picture) -> String {

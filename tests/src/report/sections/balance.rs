@@ -51,8 +51,8 @@ const CHARTS: [ChartSpec; 1] = [ChartSpec {
 pub(super) const SECTION: Section = Section {
     id: "balance",
     chapter: Chapter::Tree,
-    title: "Does an even tree matter? The paper's 3.3.1, and planes taken from triangles",
-    how: "The paper's scene. Midpoint planes as the paper has them, and the BSP tree that the name comes from: each node cut by the plane of one \
+    title: "Does an even tree matter?",
+    how: "The paper's 3.3.1 on its scene. Midpoint planes as the paper has them, and the BSP tree that the name comes from: each node cut by the plane of one \
           of its triangles (the first, or the best of eight tried), triangles in the plane kept there, those across it listed on both sides. \
           Both walks are plain and exact. Visits and tests are counted on evenly spaced rays; times, in a run of their own, on the same rays, \
           one thread, in turns.",
@@ -183,15 +183,15 @@ fn says(table: &Table) -> String {
     let fewer_tests = of(polygon, "tests_per_ray") < of(midpoint, "tests_per_ray");
     let faster = of(polygon, "ns_per_ray") < of(midpoint, "ns_per_ray");
     let so = match (more_even, faster) {
-        (true, false) => "so evenness does not make a tree fast: midpoint planes leave room empty, which costs a ray one step",
-        (true, true) => "and it is faster, so here evenness pays",
-        (false, false) => "and it is slower as well: nothing speaks for it",
-        (false, true) => "and it is faster all the same",
+        (true, false) => "They are more even and slower: evenness does not make a tree fast",
+        (true, true) => "They are more even and faster: here evenness pays",
+        (false, false) => "They are less even and slower",
+        (false, true) => "They are less even and still faster with the same plain walk",
     };
     format!(
         "At (15, 5) the lesser child of a midpoint cut holds {} of what both hold, and {} of the leaves are empty: midpoint trees are far from \
-         even. Planes taken from triangles share out {}, with {} entries a triangle to {}, {} tests a ray, which is {}, and {} nodes and leaves \
-         to {}; {so}.",
+         even. Planes taken from triangles share out {}; {} entries a triangle stand against {}, {} tests a ray ({}) against {}, {} nodes and \
+         leaves a ray against {}. {so}.",
         numbers.say("midpoint balance", of(midpoint, "balance"), "balance", " %"),
         numbers.say("midpoint empty", of(midpoint, "empty"), "empty", " %"),
         numbers.say("polygon balance", of(polygon, "balance"), "balance", " %"),
@@ -199,6 +199,7 @@ fn says(table: &Table) -> String {
         numbers.say("midpoint copies", of(midpoint, "copies"), "copies", ""),
         numbers.say("polygon tests", of(polygon, "tests_per_ray"), "tests_per_ray", ""),
         if fewer_tests { "fewer" } else { "more" },
+        numbers.say("midpoint tests", of(midpoint, "tests_per_ray"), "tests_per_ray", ""),
         numbers.say("polygon visits", of(polygon, "visits_per_ray"), "visits_per_ray", ""),
         numbers.say("midpoint visits", of(midpoint, "visits_per_ray"), "visits_per_ray", ""),
     )

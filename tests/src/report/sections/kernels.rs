@@ -193,7 +193,7 @@ fn times(run: &Run, rounds: usize) -> Result<Vec<f64>, AppError> {
 }
 
 fn measure(run: &Run) -> Result<Measured, AppError> {
-    let blocks = run.size(1, 10, 400);
+    let blocks = run.size(1, 8, 400);
     let judged = errors(run, blocks);
     run.progress.say("  kernels: errors counted, now times");
     let times = gz_app::threads::with(1, || times(run, run.rounds()))?;

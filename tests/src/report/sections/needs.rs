@@ -61,7 +61,8 @@ const CHARTS: [ChartSpec; 3] = [
     },
     ChartSpec {
         title: "Time by need",
-        caption: "What is left when a need is taken away, one need at a time: shadows, mirrors, glass, textures, and the rest.",
+        caption: "What each need takes away with it when it is turned off by itself. Rays that two needs make together, such as the shadow rays of \
+                  what is seen through glass, count in both, so that the rest may vanish.",
         only: ("", ""),
         drawn: Drawn::Bars {
             parts: &["base_ms", "shadows_ms", "mirrors_ms", "glass_ms", "textures_ms"],

@@ -68,7 +68,7 @@ struct Contender {
 
 impl Contender {
     fn setting(&self) -> String {
-        self.rules.map_or_else(|| "none".to_owned(), |it| format!("({}, {})", it.max_depth, it.min_size))
+        self.rules.map_or_else(|| "no setting".to_owned(), |it| format!("({}, {})", it.max_depth, it.min_size))
     }
 
     fn test(&self) -> Kernel {
@@ -139,7 +139,7 @@ fn times(run: &Run) -> Result<Vec<f64>, AppError> {
 }
 
 fn measure(run: &Run) -> Result<Measured, AppError> {
-    let blocks = run.size(1, 4, 200);
+    let blocks = run.size(1, 2, 200);
     let errors = errors(run, blocks);
     run.progress.say("  walks: errors counted, now times");
     let times = gz_app::threads::with(1, || times(run))?;
