@@ -84,11 +84,7 @@ fn measure(run: &Run) -> Result<Measured, AppError> {
         )?,
         by_view("t", "T-values. White where the scene's box begins, dark where it ends; black is no hit.", View::T)?,
         by_view("ids", "Which triangle. Each number in a colour of its own.", View::Id)?,
-        by_view(
-            "normals",
-            "Which way it faces. Face normals as colours: what shading has to smooth over. The mirror behind is one.",
-            View::Normal,
-        )?,
+        by_view("normals", "Which way it faces. Face normals as colours: what shading has to smooth over.", View::Normal)?,
     ];
     Ok(Measured { rows, pictures })
 }

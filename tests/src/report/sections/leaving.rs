@@ -53,12 +53,12 @@ const CHARTS: [ChartSpec; 2] = [
     },
     ChartSpec {
         title: "Where each goes wrong",
-        caption: "Wrong answers by kind of surface. A step off the surface cures acne and leaks through gaps and thin slabs; skipping \
+        caption: "Wrong answers per 10⁶ cases of each kind, one kind behind the other. A step off the surface cures acne and leaks through gaps and thin slabs; skipping \
                   the own triangle, the paper's rule, leaves the acne of its neighbours.",
         only: ("", ""),
         drawn: Drawn::Bars {
             parts: &["F1", "F2", "F3", "F4", "F5", "F6", "F8", "F12", "G7", "G8", "G13"],
-            title: "wrong answers per 10⁶ cases of each kind, one kind behind the other →",
+            title: "wrong per 10⁶ cases of a kind, added up →",
         },
     },
 ];

@@ -46,7 +46,7 @@ const DISTANCE_CHART: [ChartSpec; 1] = chart(
     "T against the distance from the origin",
     "The same triangles, moved away from the origin of space with the ray. Tests that subtract the ray's origin first hold; those that \
      work with the coordinates as they are lose a digit with each power of ten.",
-    Axis { column: "distance", title: "distance of the scene from the origin, in its own sizes →", scale: Scale::Log },
+    Axis { column: "distance", title: "distance of the scene from the origin →", scale: Scale::Log },
 );
 
 const ASPECT_CHART: [ChartSpec; 1] = chart(
