@@ -3,10 +3,10 @@
 use gz_bsp::{Midpoint, MidpointTree, TreeStats, VisitCount};
 use gz_core::{BruteForce, ClassMask, GzRay, GzTri, Kernel, RayQuery, TriBuffer};
 use gz_tests::bench::rays::RaySet;
-use gz_tests::bench::scenes::{PAPER, bench_scene, teapot, uneven};
+use gz_tests::bench::scenes::{PAPER, bench_scene, teapot};
 use gz_tests::hard::classes::Class;
 use gz_tests::hard::dice::Dice;
-use gz_tests::hard::meshes::integer_field;
+use gz_tests::hard::meshes::{integer_field, soup};
 use gz_tests::plain_trees::{Disagreement, Ending, Insert, PlainMidpoint, PlainRules, PolygonBsp, PolygonRules};
 
 fn buffer(triangles: impl IntoIterator<Item = [gz_core::GzCoord; 3]>) -> TriBuffer {
@@ -19,7 +19,7 @@ fn buffer(triangles: impl IntoIterator<Item = [gz_core::GzCoord; 3]>) -> TriBuff
 
 /// Triangles, and rays of all kinds at them.
 fn scenes() -> Vec<(&'static str, TriBuffer, Vec<GzRay>)> {
-    let random = |tris: &TriBuffer| RaySet::random(&tris.bounds(), 1500).rays().map(|(ray, _)| ray).collect::<Vec<_>>();
+    let random = |tris: &TriBuffer| RaySet::random(&tris.bounds(), 1000).rays().map(|(ray, _)| ray).collect::<Vec<_>>();
     let paper = bench_scene(PAPER).expect("the scene is there");
     let of_paper = paper.rays.sample(2000).rays().map(|(ray, _)| ray).collect();
     let mut scenes = vec![("the paper's", paper.tris, of_paper)];
@@ -37,7 +37,7 @@ fn scenes() -> Vec<(&'static str, TriBuffer, Vec<GzRay>)> {
 /// Rays along each axis, both ways, from corner to corner: in planes that trees cut by.
 fn along_the_axes(tris: &TriBuffer) -> Vec<GzRay> {
     let mut rays = Vec::new();
-    for corners in tris.positions().iter().step_by(7) {
+    for corners in tris.positions().iter().step_by(tris.len().div_ceil(200)) {
         for axis in 0..3 {
             let mut direction = gz_core::GzCoord::ZERO;
             direction[axis] = if corners[1][axis] > corners[0][axis] { 1.0 } else { -1.0 };
@@ -82,13 +82,16 @@ fn hard_rays_do_not_fool_the_tree_of_polygon_planes() {
 #[test]
 fn polygon_planes_keep_every_triangle_that_can_be_hit() {
     let tris = buffer(teapot(4));
-    let tree = PolygonBsp::build(&tris, PolygonRules::default());
-    let shape = tree.shape();
-    // A line that goes through all is tested against what it meets; all lists together name each triangle at least once.
-    assert!(shape.stats.references >= tris.len() && shape.stats.depth <= 31, "{shape:?}");
+    // Some of the teapot's have no area: patches that end in a point.
+    let has_area =
+        |[a, b, c]: &&[gz_core::GzCoord; 3]| (b.as_dvec3() - a.as_dvec3()).cross(c.as_dvec3() - a.as_dvec3()).length() > 0.0;
+    let can_be_hit = tris.positions().iter().filter(has_area).count();
+    assert!(can_be_hit < tris.len());
+    let shape = PolygonBsp::build(&tris, PolygonRules::default()).shape();
+    assert!(shape.stats.references >= can_be_hit && shape.stats.depth <= 31, "{shape:?}");
     assert!(shape.balance > 0.0 && shape.balance <= 0.5 && shape.mean_level >= shape.even_level() - 1e-9, "{shape:?}");
     let whole = PolygonBsp::build(&tris, PolygonRules { max_depth: 0, ..PolygonRules::default() }).shape();
-    assert_eq!((whole.stats.nodes, whole.stats.references, whole.stats.depth), (1, tris.len(), 1));
+    assert_eq!((whole.stats.nodes, whole.stats.references, whole.stats.depth), (1, can_be_hit, 1));
 }
 
 #[test]

@@ -6,6 +6,7 @@
 mod bench;
 mod ci;
 mod golden;
+mod lanes;
 mod measure;
 mod render;
 mod report;
@@ -28,7 +29,7 @@ struct Failure {
     code: u8,
 }
 
-const TASKS: [Task; 7] = [
+const TASKS: [Task; 8] = [
     Task {
         name: "render",
         takes: "[NAME|FILE|all] [gz options]",
@@ -55,7 +56,7 @@ const TASKS: [Task; 7] = [
     },
     Task {
         name: "bench",
-        takes: "paper|grid|brute|scale|front|memory|agree|peers",
+        takes: "paper|grid|brute|scale|front|memory|agree|micro|frames|peers",
         does: "measure: the paper's tables, the best of its trees, plain C, growth, others (see docs/BENCH.md)",
         run: bench::run,
     },
@@ -64,6 +65,12 @@ const TASKS: [Task; 7] = [
         takes: "[--quick|--full] [--check]",
         does: "speed against error, in one page: docs/report/index.html (see docs/REPORT.md)",
         run: report::run,
+    },
+    Task {
+        name: "lanes",
+        takes: "",
+        does: "read the generated code of the walk: no kernel may be called that should be inlined",
+        run: lanes::run,
     },
     Task { name: "ci", takes: "", does: "format, clippy, docs and tests: what has to pass before a push", run: ci::run },
 ];

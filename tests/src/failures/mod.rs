@@ -155,3 +155,17 @@ fn shot(caption: &str, scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery) -
     let frame = shade_frame(scene, needs, query, &TileGrid::whole(width, height, 32), &|_| {});
     Shot { caption: caption.to_owned(), width, height, rgb: rgb8(&frame.colors, scene.rules.color_code) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gz_core::BruteForce;
+
+    #[test]
+    fn holes_are_cured_to_the_picture_of_brute_force() {
+        let (fine, _) = shadows(&Overrides { size: Some(size(64)), ..Overrides::NONE }).unwrap();
+        let scene = ground::coarse(fine).unwrap();
+        let right = shot("", &scene, SceneNeeds::of(&scene), &BruteForce::new(&scene.tris));
+        assert!(holes(64).unwrap().cure.rgb == right.rgb);
+    }
+}

@@ -137,7 +137,7 @@ impl<V: Visits> Task for ClosestTask<'_, V> {
                 }
                 if count(&company) >= COMPANY {
                     let mut quest = ClosestOf { tree, bundle, rays, targets: &targets };
-                    if tree.send_together::<S, _>(slabs, slabs.near(p, lane), &company, queue, stack, &mut quest) {
+                    if tree.send_together::<S, _>(slabs, slabs.way(p, lane), &company, queue, stack, &mut quest) {
                         continue;
                     }
                 }
@@ -185,7 +185,7 @@ impl<V: Visits> Task for AnyTask<'_, V> {
                 }
                 if count(&company) >= COMPANY {
                     let mut quest = AnyOf { tree, bundle, rays, targets: &targets, blocked: &mut blocked };
-                    if tree.send_together::<S, _>(slabs, slabs.near(p, lane), &company, queue, stack, &mut quest) {
+                    if tree.send_together::<S, _>(slabs, slabs.way(p, lane), &company, queue, stack, &mut quest) {
                         continue;
                     }
                 }

@@ -6,7 +6,7 @@
 //! 8 e (max |p| + |o|) / |d| along the axis, and a little for numbers below the normal range, so every entry is at most the true one and
 //! every exit at least. A fused multiply-add only removes a rounding.
 
-use super::wide::WideNode;
+use super::wide::{Way, WideNode};
 use gz_core::GzCoord;
 use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays};
 use gz_core::simd::{Lanes, Simd};
@@ -83,11 +83,11 @@ impl BundleSlabs {
         company
     }
 
-    /// The end of a node's cells where a ray enters, by axis: 0 is the lower one.
+    /// Which way a ray goes along each axis.
     #[inline(always)]
-    pub(super) fn near(&self, p: usize, lane: usize) -> [usize; 3] {
+    pub(super) fn way(&self, p: usize, lane: usize) -> Way {
         let [x, y, z] = [self.down[0][p], self.down[1][p], self.down[2][p]];
-        [(x >> lane & 1) as usize, (y >> lane & 1) as usize, (z >> lane & 1) as usize]
+        Way::new([x >> lane & 1 != 0, y >> lane & 1 != 0, z >> lane & 1 != 0])
     }
 
     /// One ray by itself.
@@ -95,7 +95,7 @@ impl BundleSlabs {
     pub(super) fn alone(&self, p: usize, lane: usize, tmin: f32) -> Slabs {
         let (inverse, enter, leave) =
             (of_ray(&self.inverse, p, lane), of_ray(&self.enter, p, lane), of_ray(&self.leave, p, lane));
-        Slabs { near: self.near(p, lane), inverse, enter, leave, tmin }
+        Slabs { way: self.way(p, lane), inverse, enter, leave, tmin }
     }
 }
 
@@ -106,7 +106,7 @@ fn of_ray(rows: &[Each; 3], p: usize, lane: usize) -> [f32; 3] {
 
 /// The same of one ray.
 pub(super) struct Slabs {
-    near: [usize; 3],
+    way: Way,
     inverse: [f32; 3],
     enter: [f32; 3],
     leave: [f32; 3],
@@ -120,7 +120,7 @@ impl Slabs {
         let (mut near, mut far) = (L::splat(self.tmin), L::splat(limit));
         for axis in 0..3 {
             let inverse = L::splat(self.inverse[axis]);
-            let [first, last] = node.ends(axis, self.near[axis]);
+            let [first, last] = node.ends(&self.way, axis);
             near = near.max(L::load(first).mul_sub(inverse, L::splat(self.enter[axis])));
             far = far.min(L::load(last).mul_sub(inverse, L::splat(self.leave[axis])));
         }

@@ -9,7 +9,7 @@
 
 use super::slabs::BundleSlabs;
 use super::walk::Stack;
-use super::wide::{BspTree, Child, Target, WideNode};
+use super::wide::{BspTree, Child, Target, Way, WideNode};
 use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, Spans, TriGroup, count, greatest, least};
 use gz_core::simd::{Lanes, Simd};
 use gz_core::{RayBatch, Targets};
@@ -76,15 +76,15 @@ const ALIKE: u32 = 65;
 
 /// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
 struct Beam {
-    near: [usize; 3],
+    way: Way,
     span: [[f32; 4]; 3],
     tmin: f32,
 }
 
 impl Beam {
     #[inline(always)]
-    fn of<S: Simd>(bundle: &RayBundle, slabs: &BundleSlabs, near: [usize; 3], company: &Rays) -> Self {
-        let mut beam = Self { near, span: [[0.0; 4]; 3], tmin: least::<S>(&bundle.tmin, company) };
+    fn of<S: Simd>(bundle: &RayBundle, slabs: &BundleSlabs, way: Way, company: &Rays) -> Self {
+        let mut beam = Self { way, span: [[0.0; 4]; 3], tmin: least::<S>(&bundle.tmin, company) };
         for axis in 0..3 {
             let (inverse, enter, leave) = (&slabs.inverse[axis], &slabs.enter[axis], &slabs.leave[axis]);
             beam.span[axis] = [
@@ -104,7 +104,7 @@ impl Beam {
         for axis in 0..3 {
             let [least, greatest, enter, leave] = self.span[axis];
             let (least, greatest) = (L::splat(least), L::splat(greatest));
-            let [first, last] = node.ends(axis, self.near[axis]);
+            let [first, last] = node.ends(&self.way, axis);
             let (first, last) = (L::load(first), L::load(last));
             near = near.max(first.times(least).min(first.times(greatest)).minus(L::splat(enter)));
             far = far.min(last.times(least).max(last.times(greatest)).minus(L::splat(leave)));
@@ -126,7 +126,7 @@ fn cross_one<L: Lanes<LANES>>(
     let (mut enter, mut leave) = (L::load(&bundle.tmin[p]), L::load(&bundle.limit[p]));
     for axis in 0..3 {
         let inverse = L::load(&slabs.inverse[axis][p]);
-        let [first, last] = node.ends(axis, beam.near[axis]);
+        let [first, last] = node.ends(&beam.way, axis);
         let (first, last) = (L::splat(first[slot]), L::splat(last[slot]));
         enter = enter.max(first.mul_sub(inverse, L::load(&slabs.enter[axis][p])));
         leave = leave.min(last.mul_sub(inverse, L::load(&slabs.leave[axis][p])));
@@ -135,13 +135,13 @@ fn cross_one<L: Lanes<LANES>>(
 }
 
 impl BspTree<'_> {
-    /// Sends the rays of `company`, which go the same way along each axis as `near` says; gives up, before anything is tested, when they
+    /// Sends the rays of `company`, which go the same way along each axis as `way` says; gives up, before anything is tested, when they
     /// part at the root.
     #[inline(always)]
     pub(super) fn send_together<S: Simd, Q: BundleQuest<S>>(
         &self,
         slabs: &BundleSlabs,
-        near: [usize; 3],
+        way: Way,
         company: &Rays,
         queue: &mut Queue,
         stack: &mut Stack,
@@ -150,7 +150,7 @@ impl BspTree<'_> {
         if !self.seem_together::<S>(slabs, company, quest.bundle()) {
             return false;
         }
-        let beam = Beam::of::<S>(quest.bundle(), slabs, near, company);
+        let beam = Beam::of::<S>(quest.bundle(), slabs, way, company);
         let mut greatest_limit = greatest::<S>(&quest.bundle().limit, company);
         // Rays whose quest is not over, and those of them that cross the node.
         let spans = Spans::of::<S>(quest.bundle(), company);

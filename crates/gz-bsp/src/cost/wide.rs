@@ -19,6 +19,46 @@ pub(crate) struct WideNode {
     pub(crate) children: [Child; WIDTH],
 }
 
+/// Where a row of a node's planes begins among their numbers. The type has no other values, so that a walk needs neither a check nor a
+/// multiplication to find one.
+#[derive(Clone, Copy)]
+#[repr(usize)]
+enum Start {
+    LowX = 0,
+    HighX = 8,
+    LowY = 16,
+    HighY = 24,
+    LowZ = 32,
+    HighZ = 40,
+}
+
+/// Which way rays go along each axis, as the rows of planes where they enter cells and leave them: a reference into a table, as what is
+/// worked out from the directions the optimizer likes to work out anew at every node.
+#[derive(Clone, Copy)]
+pub(super) struct Way(&'static [[Start; 2]; 3]);
+
+impl Way {
+    /// By whether rays go down along each axis.
+    #[inline(always)]
+    pub(super) fn new(down: [bool; 3]) -> Self {
+        Self(&WAYS[usize::from(down[0]) | usize::from(down[1]) << 1 | usize::from(down[2]) << 2])
+    }
+}
+
+static WAYS: [[[Start; 2]; 3]; 8] = {
+    use Start::*;
+    const X: [[Start; 2]; 2] = [[LowX, HighX], [HighX, LowX]];
+    const Y: [[Start; 2]; 2] = [[LowY, HighY], [HighY, LowY]];
+    const Z: [[Start; 2]; 2] = [[LowZ, HighZ], [HighZ, LowZ]];
+    let mut ways = [[X[0], Y[0], Z[0]]; 8];
+    let mut way = 0;
+    while way < 8 {
+        ways[way] = [X[way & 1], Y[way >> 1 & 1], Z[way >> 2]];
+        way += 1;
+    }
+    ways
+};
+
 /// What a cell holds: nothing, a node, or a run of groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
@@ -86,11 +126,19 @@ impl WideNode {
         self.children[slot] = child;
     }
 
-    /// Where all cells begin and end along an axis for a ray that enters at their lower end (`near` 0) or at their upper end (1).
+    /// The planes of all cells where rays that go `way` enter and leave them along an axis.
     #[inline(always)]
-    pub(super) fn ends(&self, axis: usize, near: usize) -> [&[f32; WIDTH]; 2] {
-        let near = near & 1;
-        [&self.planes[2 * axis + near], &self.planes[2 * axis + 1 - near]]
+    pub(super) fn ends(&self, way: &Way, axis: usize) -> [&[f32; WIDTH]; 2] {
+        let [first, last] = way.0[axis];
+        [self.row(first), self.row(last)]
+    }
+
+    #[inline(always)]
+    fn row(&self, start: Start) -> &[f32; WIDTH] {
+        match self.planes.as_flattened()[start as usize..].first_chunk() {
+            Some(row) => row,
+            None => unreachable!("eight numbers follow every start"),
+        }
     }
 
     pub(crate) fn bounds(&self, slot: usize) -> Bounds {
