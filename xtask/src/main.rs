@@ -9,6 +9,7 @@ mod golden;
 mod lanes;
 mod measure;
 mod render;
+mod report;
 mod verify;
 
 use std::path::PathBuf;
@@ -28,7 +29,7 @@ struct Failure {
     code: u8,
 }
 
-const TASKS: [Task; 7] = [
+const TASKS: [Task; 8] = [
     Task {
         name: "render",
         takes: "[NAME|FILE|all] [gz options]",
@@ -58,6 +59,12 @@ const TASKS: [Task; 7] = [
         takes: "paper|grid|brute|scale|front|memory|agree|micro|frames|peers",
         does: "measure: the paper's tables, the best of its trees, plain C, growth, others (see docs/BENCH.md)",
         run: bench::run,
+    },
+    Task {
+        name: "report",
+        takes: "[--quick|--full] [--check]",
+        does: "speed against error, in one page: docs/report/index.html (see docs/REPORT.md)",
+        run: report::run,
     },
     Task {
         name: "lanes",
