@@ -75,6 +75,9 @@ fn polygons() -> impl Iterator<Item = (String, PolygonRules)> {
         .map(|(name, tried)| (name.to_owned(), PolygonRules { tried, ..PolygonRules::default() }))
 }
 
+/// A walk that counts what it visits.
+type Walk<'a> = dyn Fn(&GzRay, &mut VisitCount) -> Hit + Sync + 'a;
+
 /// A tree, with what it takes to count its walk.
 struct Built<'a> {
     name: String,
@@ -82,7 +85,7 @@ struct Built<'a> {
     shape: Shape,
     build: f64,
     query: Box<dyn RayQuery + 'a>,
-    walk: Box<dyn Fn(&GzRay, &mut VisitCount) -> Hit + Sync + 'a>,
+    walk: Box<Walk<'a>>,
 }
 
 fn trees(tris: &TriBuffer) -> Vec<Built<'_>> {
