@@ -1,4 +1,4 @@
-//! What the tests of the whole workspace share, and the measurements behind `cargo xtask verify` and `cargo xtask measure`.
+//! What the tests of the whole workspace share, and the measurements behind `cargo xtask verify`, `measure`, `bench` and `report`.
 #![forbid(unsafe_code)]
 
 pub mod bench;
@@ -14,6 +14,7 @@ pub mod needs_scenes;
 pub mod needs_time;
 pub mod plain_trees;
 pub mod rendered;
+pub mod report;
 pub mod scenes;
 pub mod truth;
 pub mod verify;

@@ -46,6 +46,19 @@ fn raw(corners: &[[GzCoord; 3]]) -> Vec<u8> {
     corners.iter().flatten().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect()
 }
 
+/// Whole points and triangles over them as the target `filter_soundness` reads them, at 2^`scale` of their size and `offset` away, then what
+/// is left for rays.
+fn shared(scale: i8, offset: u8, points: &[[i16; 3]], faces: &[[u8; 3]], rays: &[u8]) -> Vec<u8> {
+    // 2^k is written as k + 40 and k + 20, the number of points as what it is beyond 3, that of triangles beyond 1.
+    let mut bytes = vec![(scale + 40) as u8, 20 + offset, u8::from(offset > 0), points.len() as u8 - 3];
+    bytes.extend(points.iter().flatten().flat_map(|x| (x * 256).to_le_bytes()));
+    bytes.push(faces.len() as u8 - 1);
+    // A 1 behind each triangle: no needle.
+    bytes.extend(faces.iter().flat_map(|[a, b, c]| [*a, *b, *c, 1]));
+    bytes.extend(rays);
+    bytes
+}
+
 /// Triangles as the target `trace` reads them: their number, then corners that are not taken from before, then rays.
 fn traced(corners: &[[GzCoord; 3]], rays: &[u8]) -> Vec<u8> {
     let mut bytes = vec![corners.len() as u8];
@@ -90,6 +103,18 @@ fn write_seeds() {
         let mut built = vec![if *name == "copies" { 39 } else { 0 }, 1];
         built.extend(raw(triangles));
         write("build_tree", name, &built);
+    }
+    let quad = [[-1, -1, 4], [1, -1, 4], [1, 1, 4], [-1, 1, 4]];
+    let pyramid = [[-3, -3, 5], [3, -3, 5], [3, 3, 5], [-3, 3, 5], [0, 0, 9]];
+    let halves = [[0, 1, 2], [0, 2, 3]];
+    let sides = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 1, 2], [0, 2, 3]];
+    for (name, scale, offset) in [("unit", 0, 0), ("tiny", -39, 0), ("huge", 39, 0), ("offset", 0, 12), ("far", 0, 20)] {
+        let rays: Vec<u8> = (0..400).map(|_| dice.bits() as u8).collect();
+        write("filter_soundness", &format!("quad_{name}"), &shared(scale, offset, &quad, &halves, &rays));
+        write("filter_soundness", &format!("pyramid_{name}"), &shared(scale, offset, &pyramid, &sides, &rays));
+        // Copies, both ways round, and triangles without area.
+        let copies = [[0, 1, 2], [2, 1, 0], [0, 1, 2], [0, 0, 1], [0, 1, 3]];
+        write("filter_soundness", &format!("copies_{name}"), &shared(scale, offset, &quad, &copies, &rays));
     }
     for k in 0..16 {
         let bytes: Vec<u8> = (0..60 + 20 * k).map(|_| dice.bits() as u8).collect();

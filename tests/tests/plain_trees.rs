@@ -23,9 +23,9 @@ fn scenes() -> Vec<(&'static str, TriBuffer, Vec<GzRay>)> {
     let paper = bench_scene(PAPER).expect("the scene is there");
     let of_paper = paper.rays.sample(2000).rays().map(|(ray, _)| ray).collect();
     let mut scenes = vec![("the paper's", paper.tris, of_paper)];
-    for (name, triangles) in
-        [("teapot", teapot(4)), ("uneven", uneven()), ("integer field", integer_field(&mut Dice::new(5), 12))]
-    {
+    let mut dice = Dice::new(5);
+    let made = [("teapot", teapot(4)), ("soup", soup(&mut dice, 500, 0.4)), ("integer field", integer_field(&mut dice, 12))];
+    for (name, triangles) in made {
         let tris = buffer(triangles);
         let mut rays = random(&tris);
         rays.extend(along_the_axes(&tris));

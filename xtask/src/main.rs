@@ -6,8 +6,10 @@
 mod bench;
 mod ci;
 mod golden;
+mod lanes;
 mod measure;
 mod render;
+mod report;
 mod verify;
 
 use std::path::PathBuf;
@@ -27,7 +29,7 @@ struct Failure {
     code: u8,
 }
 
-const TASKS: [Task; 6] = [
+const TASKS: [Task; 8] = [
     Task {
         name: "render",
         takes: "[NAME|FILE|all] [gz options]",
@@ -54,9 +56,21 @@ const TASKS: [Task; 6] = [
     },
     Task {
         name: "bench",
-        takes: "paper|grid|brute|scale|front|memory|agree|peers",
+        takes: "paper|grid|brute|scale|front|memory|agree|micro|frames|peers",
         does: "measure: the paper's tables, the best of its trees, plain C, growth, others (see docs/BENCH.md)",
         run: bench::run,
+    },
+    Task {
+        name: "report",
+        takes: "[--quick|--full] [--check]",
+        does: "speed against error, in one page: docs/report/index.html (see docs/REPORT.md)",
+        run: report::run,
+    },
+    Task {
+        name: "lanes",
+        takes: "",
+        does: "read the generated code of the walk: no kernel may be called that should be inlined",
+        run: lanes::run,
     },
     Task { name: "ci", takes: "", does: "format, clippy, docs and tests: what has to pass before a push", run: ci::run },
 ];

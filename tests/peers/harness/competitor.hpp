@@ -18,6 +18,8 @@ public:
     load(library, any_, "peer_any");
     load(library, bytes_, "peer_bytes");
     load(library, free_, "peer_free");
+    closest64_ = reinterpret_cast<decltype(closest64_)>(dlsym(library, "peer_closest64"));
+    any64_ = reinterpret_cast<decltype(any64_)>(dlsym(library, "peer_any64"));
     std::string stem = path.substr(path.rfind('/') + 1);
     stem = stem.substr(0, stem.rfind(".so"));
     name_ = (stem.rfind("lib", 0) == 0 ? stem.substr(3) : stem) + ":" + variant_;
@@ -28,7 +30,15 @@ public:
     if (!peer_) fail(name_ + ": builds nothing");
   }
   void closest(const PeerRay *rays, size_t n, PeerHit *hits) const { closest_(peer_, rays, n, hits); }
-  void any(const PeerRay *rays, size_t n, uint8_t *occluded) const { any_(peer_, rays, n, occluded); }
+  // Rays `first` to `first + n` of a set, which this competitor may want in one form or the other.
+  void closest(const RaySet &rays, size_t first, size_t n, PeerHit *hits) const {
+    if (closest64_ && !rays.wide.empty()) closest64_(peer_, &rays.wide[first], n, hits);
+    else closest_(peer_, &rays.rays[first], n, hits);
+  }
+  void any(const RaySet &rays, size_t first, size_t n, uint8_t *occluded) const {
+    if (any64_ && !rays.wide.empty()) any64_(peer_, &rays.wide[first], n, occluded);
+    else any_(peer_, &rays.rays[first], n, occluded);
+  }
   size_t bytes() const { return bytes_(peer_); }
   void release() {
     free_(peer_);
@@ -47,6 +57,8 @@ private:
   decltype(&peer_build) build_;
   decltype(&peer_closest) closest_;
   decltype(&peer_any) any_;
+  decltype(&peer_closest64) closest64_;
+  decltype(&peer_any64) any64_;
   decltype(&peer_bytes) bytes_;
   decltype(&peer_free) free_;
 };

@@ -42,15 +42,36 @@ inline Mesh read_mesh(const std::string &path) {
   return mesh;
 }
 
-inline std::vector<PeerRay> read_rays(const std::string &path) {
+// The rays of a set. `wide` is empty unless the set has origins in f64; `rays` are then the same, rounded.
+struct RaySet {
+  std::vector<PeerRay> rays;
+  std::vector<PeerRay64> wide;
+};
+
+template <class Ray> std::vector<Ray> read_array(const std::string &path) {
   FILE *file = fopen(path.c_str(), "rb");
   if (!file) fail(path + ": cannot be opened");
   fseek(file, 0, SEEK_END);
-  std::vector<PeerRay> rays(size_t(ftell(file)) / sizeof(PeerRay));
+  std::vector<Ray> rays(size_t(ftell(file)) / sizeof(Ray));
   rewind(file);
-  if (fread(rays.data(), sizeof(PeerRay), rays.size(), file) != rays.size()) fail(path + ": ends early");
+  if (fread(rays.data(), sizeof(Ray), rays.size(), file) != rays.size()) fail(path + ": ends early");
   fclose(file);
   return rays;
+}
+
+// A file PREFIX.rays holds PeerRay, a file PREFIX.rays64 holds PeerRay64. A rounded origin may lie behind the surface that it leaves:
+// `lift` is the tmin of rays that are rounded, as renderers in f32 have it.
+inline RaySet read_rays(const std::string &path, float lift) {
+  RaySet set;
+  const std::string end = ".rays64";
+  if (path.size() < end.size() || path.compare(path.size() - end.size(), end.size(), end) != 0) {
+    set.rays = read_array<PeerRay>(path);
+    return set;
+  }
+  set.wide = read_array<PeerRay64>(path);
+  for (const PeerRay64 &r : set.wide)
+    set.rays.push_back({float(r.ox), float(r.oy), float(r.oz), r.tmin + lift, r.dx, r.dy, r.dz, r.tmax});
+  return set;
 }
 
 // Whole or not at all: a run that is stopped must not leave half a file to the next one.

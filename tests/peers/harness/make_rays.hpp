@@ -6,7 +6,7 @@
 //  reflect   mirrored at every primary hit, in tile order
 //  random    from uniform points in the object's box in uniform directions
 //
-// Secondary rays start 1e-4 of the object's diagonal above the surface, on the side of the eye.
+// Secondary rays start LIFT of the object's diagonal above the surface, on the side of the eye.
 #pragma once
 #include "competitor.hpp"
 #include <algorithm>
@@ -35,6 +35,7 @@ inline Vec corner(const Mesh &mesh, size_t triangle, int k) {
 constexpr float PI = 3.14159265358979f;
 constexpr int PIXELS = 1024, TILE = 8;
 constexpr float VIEW_DEGREES = 42;
+constexpr float LIFT = 1e-4f;
 
 // The axis that the ground does not extend along.
 inline int up_axis(const Mesh &mesh) {
@@ -117,7 +118,7 @@ inline void make_rays(const Mesh &mesh, const std::string &prefix, Competitor &g
     Vec normal = unit(cross(b - a, c - a));
     if (!(dot(normal, normal) > 0.5f)) continue; // too thin for a normal
     if (dot(normal, direction) > 0) normal = normal * -1;
-    const Vec start = view.eye + direction * hits[k].t + normal * (1e-4f * view.diagonal);
+    const Vec start = view.eye + direction * hits[k].t + normal * (LIFT * view.diagonal);
     if (dot(normal, view.light) > 0) shadow.push_back(unbounded(start, view.light));
     reflect.push_back(unbounded(start, direction - normal * (2 * dot(normal, direction))));
   }

@@ -15,6 +15,13 @@ typedef struct {
   float dx, dy, dz, tmax;
 } PeerRay;
 
+/* A ray as gz has it, for those who can use it: the origin in f64, and the triangle that the ray leaves, 0xffffffff for none. */
+typedef struct {
+  double ox, oy, oz;
+  float tmin, dx, dy, dz, tmax;
+  uint32_t leaves;
+} PeerRay64;
+
 /* A miss has prim 0xffffffff. */
 typedef struct {
   float t;
@@ -35,6 +42,10 @@ void peer_closest(void *peer, const PeerRay *rays, size_t n, PeerHit *hits);
 
 /* 1 for each ray that hits anything, else 0. */
 void peer_any(void *peer, const PeerRay *rays, size_t n, uint8_t *occluded);
+
+/* The same questions about rays of the other kind. Optional: who does not have them is asked about rays with origins rounded to f32. */
+void peer_closest64(void *peer, const PeerRay64 *rays, size_t n, PeerHit *hits);
+void peer_any64(void *peer, const PeerRay64 *rays, size_t n, uint8_t *occluded);
 
 /* Bytes of the structure, 0 where that is unknown. */
 size_t peer_bytes(void *peer);

@@ -1,7 +1,8 @@
 // Races competitors on the same rays, in turns.
 //
 //  race rays  MESH PREFIX COMPETITOR                        writes PREFIX.SET.rays; the competitor finds the primary hits
-//  race trace MESH RAYS SET THREADS ROUNDS COMPETITOR...    a line a competitor, see `trace`
+//  race trace MESH RAYS SET THREADS ROUNDS COMPETITOR...    a line a competitor and number of threads, see `trace`
+//                                                           THREADS is a number or several with commas between them
 //  race build MESH THREADS COMPETITOR                       one build, alone in its process: a line, see `build`
 //
 // A competitor is LIBRARY.so:VARIANT.
@@ -71,64 +72,79 @@ struct Answers {
   }
 };
 
-// Prints for each competitor: name, rays, hits, rays whose answer differs from the first competitor's, seconds of the fastest turns
-// together, and the seconds of each round.
-static void trace(const Mesh &mesh, const std::vector<PeerRay> &rays, bool any, int threads, size_t rounds,
+// A competitor on a number of threads.
+struct Entry {
+  Competitor *competitor;
+  int threads;
+  size_t hits = 0, differing = 0, rounds = 0;
+  std::vector<std::vector<double>> times; // by round and turn
+};
+
+// Prints for each competitor and number of threads: name, threads, rays, hits, rays whose answer differs from the first competitor's,
+// seconds of the fastest turns together, and the seconds of each round.
+static void trace(const Mesh &mesh, const RaySet &rays, bool any, const std::vector<int> &threads, size_t rounds,
                   std::vector<Competitor> &competitors) {
-  const size_t n = rays.size(), turns = (n + TURN - 1) / TURN;
+  const size_t n = rays.rays.size(), turns = (n + TURN - 1) / TURN;
   Answers answers(n, any), reference(n, any);
-  auto turn = [&](const Competitor &one, size_t from, size_t count) {
-    return seconds(threads, count, [&](size_t first, size_t m) {
+  auto turn = [&](const Entry &entry, size_t from, size_t count) {
+    return seconds(entry.threads, count, [&](size_t first, size_t m) {
       const size_t at = from + first;
-      if (any) one.any(&rays[at], m, &answers.occluded[at]);
-      else one.closest(&rays[at], m, &answers.hits[at]);
+      if (any) entry.competitor->any(rays, at, m, &answers.occluded[at]);
+      else entry.competitor->closest(rays, at, m, &answers.hits[at]);
     });
   };
 
   // Answers, and with them a first touch of all memory.
-  struct Result {
-    size_t hits = 0, differing = 0, rounds = 0;
-    std::vector<std::vector<double>> times; // by round and turn
-  };
-  std::vector<Result> results(competitors.size());
-  for (size_t c = 0; c < competitors.size(); c++) {
-    competitors[c].build(mesh, std::max(threads, 1));
-    const double once = turn(competitors[c], 0, n);
-    results[c].rounds = once > 1.0 ? std::min(rounds, SLOW_ROUNDS) : rounds;
-    if (c == 0) reference = answers;
-    for (size_t k = 0; k < n; k++) {
-      results[c].hits += answers.is_hit(k);
-      results[c].differing += answers.differs(reference, k);
+  std::vector<Entry> entries;
+  for (auto &competitor : competitors) competitor.build(mesh, *std::max_element(threads.begin(), threads.end()));
+  for (int count : threads)
+    for (auto &competitor : competitors) {
+      Entry entry{&competitor, count};
+      const double once = turn(entry, 0, n);
+      entry.rounds = once > 1.0 ? std::min(rounds, SLOW_ROUNDS) : rounds;
+      if (entries.empty()) reference = answers;
+      for (size_t k = 0; k < n; k++) {
+        entry.hits += answers.is_hit(k);
+        entry.differing += answers.differs(reference, k);
+      }
+      entries.push_back(entry);
     }
-  }
 
   for (size_t round = 0; round < rounds; round++) {
-    for (auto &result : results) result.times.emplace_back();
+    for (auto &entry : entries) entry.times.emplace_back();
     for (size_t t = 0; t < turns; t++)
-      for (size_t k = 0; k < competitors.size(); k++) {
+      for (size_t k = 0; k < entries.size(); k++) {
         // Whoever begins moves on.
-        const size_t c = (k + round + t) % competitors.size();
-        if (round < results[c].rounds) results[c].times[round].push_back(turn(competitors[c], t * TURN, std::min(TURN, n - t * TURN)));
+        Entry &entry = entries[(k + round + t) % entries.size()];
+        if (round < entry.rounds) entry.times[round].push_back(turn(entry, t * TURN, std::min(TURN, n - t * TURN)));
       }
   }
 
-  for (size_t c = 0; c < competitors.size(); c++) {
-    const Result &result = results[c];
+  for (const Entry &entry : entries) {
     double best = 0;
     for (size_t t = 0; t < turns; t++) {
       double least = INFINITY;
-      for (size_t round = 0; round < result.rounds; round++) least = std::min(least, result.times[round][t]);
+      for (size_t round = 0; round < entry.rounds; round++) least = std::min(least, entry.times[round][t]);
       best += least;
     }
-    printf("%s %zu %zu %zu %.9f", competitors[c].name().c_str(), n, result.hits, result.differing, best);
-    for (size_t round = 0; round < result.rounds; round++) {
+    printf("%s %d %zu %zu %zu %.9f", entry.competitor->name().c_str(), entry.threads, n, entry.hits, entry.differing, best);
+    for (size_t round = 0; round < entry.rounds; round++) {
       double sum = 0;
-      for (double time : result.times[round]) sum += time;
+      for (double time : entry.times[round]) sum += time;
       printf(" %.9f", sum);
     }
     printf("\n");
-    competitors[c].release();
   }
+  for (auto &competitor : competitors) competitor.release();
+}
+
+// The numbers of a list with commas.
+static std::vector<int> numbers(const std::string &list) {
+  std::vector<int> found;
+  for (size_t at = 0; at < list.size(); at = list.find(',', at) == list.npos ? list.size() : list.find(',', at) + 1)
+    found.push_back(std::max(std::atoi(list.c_str() + at), 1));
+  if (found.empty()) fail("no number of threads");
+  return found;
 }
 
 // Bytes of memory in use, and the most that there ever were, from the line of /proc/self/status called `name`.
@@ -160,8 +176,9 @@ int main(int count, char **words) {
     make_rays(read_mesh(argument[1]), argument[2], guide);
   } else if (argument.size() >= 7 && argument[0] == "trace") {
     std::vector<Competitor> competitors(argument.begin() + 6, argument.end());
-    trace(read_mesh(argument[1]), read_rays(argument[2]), argument[3] == "shadow", std::stoi(argument[4]), std::stoul(argument[5]),
-          competitors);
+    const Mesh mesh = read_mesh(argument[1]);
+    const bool any = argument[3] == "shadow" || argument[3] == "frame-shadow";
+    trace(mesh, read_rays(argument[2], LIFT * Viewpoint(mesh).diagonal), any, numbers(argument[4]), std::stoul(argument[5]), competitors);
   } else if (argument.size() == 4 && argument[0] == "build") {
     Competitor competitor(argument[3]);
     build(read_mesh(argument[1]), std::stoi(argument[2]), competitor);

@@ -1,7 +1,7 @@
 //! Brute force, the tree that tunes itself and the paper's tree at every setting: equal answers to every ray.
 
 use super::options::Options;
-use super::rays::{Answer, RaySet, answers, differing, frame_rays};
+use super::rays::{Answer, RaySet, TILE, answers, differing, frame_rays};
 use super::scenes::{self, asset_scenes, loaded};
 use super::table::lines;
 use crate::row;
@@ -78,7 +78,7 @@ pub fn recorded(path: &PathBuf, width: u32) -> Result<Option<(TriBuffer, RaySet)
         Err(error) => return Err(error),
     };
     let tree = BspTree::build(&scene.tris);
-    let rays = frame_rays(&scene, needs, &tree)?;
+    let rays = frame_rays(&scene, needs, &tree, TILE)?;
     drop(tree);
     Ok(Some((scene.tris, rays)))
 }

@@ -43,7 +43,7 @@ pub fn run(options: &Options) -> Result<(), AppError> {
     // Before the check, which takes memory of its own.
     let peak = peak_bytes();
 
-    let (checked, differing, triangles) = check(&scene, &hits)?;
+    let (checked, differing, triangles) = check(&scene, &Overrides::default(), &hits)?;
     println!("{name}: {triangles} triangles; {checked} pixels checked by brute force, {differing} differ");
     if differing > 0 {
         return Err(AppError::Differs(format!("{differing} of {checked} T-values differ from those of brute force")));
@@ -84,10 +84,10 @@ fn scene_file(name: &str, folder: &Folder) -> Result<PathBuf, AppError> {
 }
 
 /// Asks brute force about evenly spaced pixels of the T-buffer: how many were asked about, how many differ, and of how many triangles.
-fn check(scene: &Path, hits: &Path) -> Result<(usize, usize, usize), AppError> {
+pub(super) fn check(scene: &Path, overrides: &Overrides, hits: &Path) -> Result<(usize, usize, usize), AppError> {
     let bytes = std::fs::read(hits).map_err(|error| AppError::Io(format!("{}: {error}", hits.display())))?;
     let found = hits_file::decode(&bytes).map_err(|reason| AppError::Io(format!("{}: {reason}", hits.display())))?;
-    let draft = load::scene(scene, &Overrides::default())?;
+    let draft = load::scene(scene, overrides)?;
     let needs = SceneNeeds::of(&draft.scene);
     let scene = draft.place(needs)?;
     let (brute, width) = (BruteForce::new(&scene.tris), scene.camera.width() as usize);

@@ -6,19 +6,25 @@
 pub mod agree;
 pub mod brute;
 pub mod counted;
+pub mod frames;
 pub mod front;
 pub mod grid;
+pub mod growth;
+pub mod indexed;
 pub mod memory;
+pub mod micro;
 pub mod options;
 pub mod paper;
 pub mod peers;
 pub mod plain_c;
 pub mod rays;
+pub mod record;
 pub mod recorder;
 pub mod scale;
 pub mod scenes;
 pub mod table;
 pub mod timing;
+pub mod tools;
 
 use gz_app::error::AppError;
 use options::{Bench, Options};
@@ -29,11 +35,11 @@ use options::{Bench, Options};
 ///
 /// Usage errors, scenes that cannot be loaded, and answers that differ.
 pub fn run(words: &[String]) -> Result<(), AppError> {
-    // It has other options, and programs of its own to time.
-    if let Some((first, words)) = words.split_first()
-        && first == "peers"
-    {
-        return peers::run(words);
+    // These have other options, and programs of their own to time.
+    match words.split_first() {
+        Some((first, words)) if first == "peers" => return peers::run(words),
+        Some((first, words)) if first == "frames" => return frames::run(words),
+        _ => {}
     }
     let options = Options::parse(words)?;
     println!("{}", timing::machine(options.threads));
@@ -46,5 +52,6 @@ pub fn run(words: &[String]) -> Result<(), AppError> {
         Bench::Front => front::run(&options),
         Bench::Memory => memory::run(&options),
         Bench::Agree => agree::run(&options),
+        Bench::Micro => micro::run(&options),
     })
 }

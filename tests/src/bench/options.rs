@@ -19,6 +19,8 @@ pub enum Bench {
     Memory,
     /// Equal answers over every scene of assets.
     Agree,
+    /// Kernels and steps of the walk.
+    Micro,
 }
 
 /// What a bench was asked to do.
@@ -36,9 +38,11 @@ pub struct Options {
     pub rays: Option<usize>,
     /// At most this many triangles (`scale`); `None` for the bench's own limit.
     pub limit: Option<usize>,
+    /// Whether the figures go to `docs/bench` too (`micro`).
+    pub write: bool,
 }
 
-const USAGE: &str = "bench paper|grid|brute|scale|front|memory|agree [--scene NAME|FILE|teapot:SEGMENTS|uneven] [--threads N] [--rounds N] [--rays N] [--limit TRIANGLES], or bench peers";
+const USAGE: &str = "bench paper|grid|brute|scale|front|memory|agree|micro [--scene NAME|FILE|teapot:SEGMENTS|uneven] [--threads N] [--rounds N] [--rays N] [--limit TRIANGLES], micro [--write], or bench frames or peers";
 
 impl Options {
     /// Reads the words.
@@ -57,11 +61,16 @@ impl Options {
             Some("front") => Bench::Front,
             Some("memory") => Bench::Memory,
             Some("agree") => Bench::Agree,
+            Some("micro") => Bench::Micro,
             Some(other) => return Err(usage(format!("there is no bench {other}"))),
             None => return Err(usage("no bench is named".to_owned())),
         };
-        let mut options = Self { bench, scenes: Vec::new(), threads: 1, rounds: None, rays: None, limit: None };
+        let mut options = Self { bench, scenes: Vec::new(), threads: 1, rounds: None, rays: None, limit: None, write: false };
         while let Some(option) = words.next() {
+            if option == "--write" && bench == Bench::Micro {
+                options.write = true;
+                continue;
+            }
             let value = words.next().ok_or_else(|| usage(format!("{option} has no value")))?;
             let number = || value.parse::<usize>().map_err(|_| usage(format!("{option} {value} is not a number")));
             let at_least_one =
@@ -93,11 +102,12 @@ mod tests {
         assert_eq!((options.bench, options.threads, options.rounds), (Bench::Grid, 2, Some(7)));
         assert_eq!(options.scenes, ["uneven", "teapot:16"]);
         assert_eq!(parse("paper").unwrap().threads, 1);
+        assert!(parse("micro --write --rounds 3").unwrap().write);
     }
 
     #[test]
     fn what_means_nothing_is_a_usage_error_in_one_line() {
-        for bad in ["", "papers", "paper --rounds", "paper --rounds x", "paper --rounds 0", "paper --size 3"] {
+        for bad in ["", "papers", "paper --rounds", "paper --rounds x", "paper --rounds 0", "paper --size 3", "paper --write"] {
             let error = parse(bad).unwrap_err();
             assert_eq!(error.exit_code(), 2, "{bad}");
             assert!(!error.to_string().contains('\n'), "{bad}");

@@ -12,7 +12,7 @@ use gz_bsp::{BspTree, CostStats, Midpoint, MidpointTree, TreeStats};
 use gz_core::{BruteForce, Kernel, RayQuery, TriBuffer};
 
 /// A row of the paper's tables: MAX_DEPTH, MIN_SIZE, its milliseconds. Brute force took about 2450 ms.
-const PUBLISHED: [(u32, usize, f64); 12] = [
+pub(crate) const PUBLISHED: [(u32, usize, f64); 12] = [
     (5, 10, 452.0),
     (8, 10, 214.0),
     (10, 10, 130.0),
@@ -28,7 +28,7 @@ const PUBLISHED: [(u32, usize, f64); 12] = [
 ];
 /// Rows of the first table, over MAX_DEPTH; the others are the second, over MIN_SIZE.
 const FIRST_TABLE: usize = 6;
-const PUBLISHED_BRUTE: f64 = 2450.0;
+pub(crate) const PUBLISHED_BRUTE: f64 = 2450.0;
 
 /// Rounds, unless the options say otherwise.
 const ROUNDS: usize = 5;
@@ -191,7 +191,7 @@ fn ours(measured: &Measured, all_tests: f64, trace: f64, brute: f64, plain: f64)
 }
 
 /// Asking `query` about all rays, ready to be timed.
-pub(super) fn timed<'q>(query: &'q dyn RayQuery, rays: &'q RaySet) -> Box<dyn FnMut() + 'q> {
+pub(crate) fn timed<'q>(query: &'q dyn RayQuery, rays: &'q RaySet) -> Box<dyn FnMut() + 'q> {
     let mut answers = room(rays);
     Box::new(move || {
         trace(query, rays, &mut answers);

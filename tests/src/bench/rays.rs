@@ -236,8 +236,8 @@ pub fn other_triangle(one: &[Answer], other: &[Answer]) -> u64 {
     one.iter().zip(other).map(of_batch).sum()
 }
 
-/// Pixels that are worked on together: the side of a tile, as in a render.
-const TILE: u32 = 32;
+/// Pixels that are worked on together: the side of a tile.
+pub const TILE: u32 = 32;
 
 /// The rays of the paper's program: a primary ray a pixel, what mirrors reflect of it, followed while the depth is below 3, and
 /// from every hit a shadow ray to each light. All are asked for the front-most hit.
@@ -305,14 +305,14 @@ fn mirror_ray(scene: &Scene, ray: &GzRay, hit: &Hit) -> Option<(GzRay, Option<Tr
     Some((GzRay::from_f64(origin, direction), Some(hit.tri)))
 }
 
-/// All rays of a frame, as its render asks about them; the order does not depend on threads.
+/// All rays of a frame, as its render asks about them in tiles of this side; the order does not depend on threads.
 ///
 /// # Errors
 ///
 /// If there is no thread to be had.
-pub fn frame_rays(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery) -> Result<RaySet, AppError> {
+pub fn frame_rays(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, tile: u32) -> Result<RaySet, AppError> {
     let recorder = Recorder::of(query);
-    let grid = TileGrid::whole(scene.camera.width(), scene.camera.height(), TILE);
+    let grid = TileGrid::whole(scene.camera.width(), scene.camera.height(), tile);
     gz_app::threads::with(1, || {
         shade_frame(scene, needs, &recorder, &grid, &|_| ());
         Ok(())

@@ -1,5 +1,6 @@
 //! Build time, trace time and memory of the self-tuned tree against the number of triangles.
 
+use super::growth::Power;
 use super::memory;
 use super::options::Options;
 use super::rays::{answers, differing, room, trace};
@@ -12,7 +13,7 @@ use gz_bsp::BspTree;
 use gz_core::BruteForce;
 
 /// Segments of the teapots: 1 thousand, 4, 16, 64, 262 thousand, 1, 4 and 8 million triangles.
-const SEGMENTS: [u32; 8] = [4, 8, 16, 32, 64, 125, 250, 354];
+pub(crate) const SEGMENTS: [u32; 8] = [4, 8, 16, 32, 64, 125, 250, 354];
 /// Above this many triangles a build is timed once.
 const ONCE: usize = 2_000_000;
 /// Rounds, unless the options say otherwise.
@@ -39,47 +40,27 @@ pub fn run(options: &Options) -> Result<(), AppError> {
         if 64 * (segments * segments) as usize > limit {
             break;
         }
-        let scene = bench_scene(&format!("teapot:{segments}"))?;
-        let tris = &scene.tris;
-        // Primary rays: those that leave the camera, which all start at one point and ask for hits.
-        let mut rays = scene.rays.primary();
-        if let Some(most) = options.rays {
-            rays = rays.sample(most);
-        }
-        let rounds = if tris.len() > ONCE { 1 } else { options.rounds.unwrap_or(ROUNDS) };
-        let (one, all): (Vec<f64>, Vec<f64>) = (0..rounds)
-            .map(|_| -> Result<(f64, f64), AppError> {
-                let build = || Ok(seconds(|| BspTree::build(tris)).0);
-                Ok((gz_app::threads::with(1, build)?, gz_app::threads::with(0, build)?))
-            })
-            .collect::<Result<Vec<_>, _>>()?
-            .into_iter()
-            .unzip();
-        let tree = BspTree::build(tris);
-        let few = rays.sample((CHECKED_TESTS / tris.len() as f64) as usize);
-        let differ = differing(&answers(&BruteForce::new(tris), &few), &answers(&tree, &few));
-        wrong += differ;
-        let mut found = room(&rays);
-        let traces: Vec<f64> = (0..rounds.max(3)).map(|_| seconds(|| trace(&tree, &rays, &mut found)).0).collect();
-        let (one, all) = (median(&one), median(&all));
-        sizes.push(tris.len() as f64);
-        single.push(one);
-        shared.push(all);
-        let per_ray = median(&traces) / rays.len().max(1) as f64;
+        let rounds = |triangles: usize| if triangles > ONCE { 1 } else { options.rounds.unwrap_or(ROUNDS) };
+        let size = Size::measure(segments, rounds(64 * (segments * segments) as usize), options.rays, CHECKED_TESTS)?;
+        let Size { triangles, build_one, build_all, rays, per_ray, bytes, checked, differing } = size;
+        sizes.push(triangles as f64);
+        single.push(build_one);
+        shared.push(build_all);
         traced.push(per_ray);
+        wrong += differing;
         rows.push(row![
-            tris.len(),
-            format!("{one:.4}"),
-            format!("{all:.4}"),
-            format!("{:.2}", tris.len() as f64 / all / 1e6),
-            rays.len(),
+            triangles,
+            format!("{build_one:.4}"),
+            format!("{build_all:.4}"),
+            format!("{:.2}", triangles as f64 / build_all / 1e6),
+            rays,
             format!("{:.0}", per_ray * 1e9),
             format!("{:.2}", 1e-6 / per_ray),
-            format!("{:.1}", tree.bytes() as f64 / tris.len() as f64),
-            few.len(),
-            differ,
+            format!("{:.1}", bytes as f64 / triangles as f64),
+            checked,
+            differing,
         ]);
-        println!("{} triangles: done", tris.len());
+        println!("{triangles} triangles: done");
     }
     print!("{}", lines(&rows));
     let fitted = sizes.iter().position(|&n| n >= FITTED_FROM as f64).unwrap_or(0);
@@ -99,6 +80,69 @@ pub fn run(options: &Options) -> Result<(), AppError> {
     }
 }
 
+/// What one size of teapot gives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Size {
+    pub(crate) triangles: usize,
+    /// Seconds to build on one thread.
+    pub(crate) build_one: f64,
+    /// Seconds to build on all.
+    pub(crate) build_all: f64,
+    /// Primary rays traced.
+    pub(crate) rays: usize,
+    /// Seconds a ray.
+    pub(crate) per_ray: f64,
+    /// Bytes of the tree.
+    pub(crate) bytes: usize,
+    /// Rays compared with brute force.
+    pub(crate) checked: usize,
+    /// Of these, answers that differ.
+    pub(crate) differing: u64,
+}
+
+impl Size {
+    /// Measures a teapot of so many segments with its primary rays, at most `most` of them, evenly spaced; brute force checks
+    /// `checked_tests` triangle tests' worth.
+    ///
+    /// # Errors
+    ///
+    /// If there are no threads to be had.
+    pub(crate) fn measure(segments: u32, rounds: usize, most: Option<usize>, checked_tests: f64) -> Result<Self, AppError> {
+        let scene = bench_scene(&format!("teapot:{segments}"))?;
+        let tris = &scene.tris;
+        // Primary rays: those that leave the camera, which all start at one point and ask for hits.
+        let rays = most.map_or_else(|| scene.rays.primary(), |most| scene.rays.primary().sample(most));
+        let (one, all): (Vec<f64>, Vec<f64>) = (0..rounds)
+            .map(|_| -> Result<(f64, f64), AppError> {
+                let build = || Ok(seconds(|| BspTree::build(tris)).0);
+                Ok((gz_app::threads::with(1, build)?, gz_app::threads::with(0, build)?))
+            })
+            .collect::<Result<Vec<_>, _>>()?
+            .into_iter()
+            .unzip();
+        let tree = BspTree::build(tris);
+        let few = rays.sample((checked_tests / tris.len() as f64) as usize);
+        let differing = differing(&answers(&BruteForce::new(tris), &few), &answers(&tree, &few));
+        let mut found = room(&rays);
+        let traces: Vec<f64> = (0..rounds.max(3)).map(|_| seconds(|| trace(&tree, &rays, &mut found)).0).collect();
+        Ok(Self {
+            triangles: tris.len(),
+            build_one: median(&one),
+            build_all: median(&all),
+            rays: rays.len(),
+            per_ray: median(&traces) / rays.len().max(1) as f64,
+            bytes: tree.bytes(),
+            checked: few.len(),
+            differing,
+        })
+    }
+}
+
+/// The exponent of the power of `x` that `y` grows with, by least squares of logarithms; `None` for fewer than two sizes.
+pub(crate) fn power_of(x: &[f64], y: &[f64]) -> Option<f64> {
+    Power::fit(x, y).map(|power| power.exponent)
+}
+
 /// Runs the memory bench in a process of its own, whose peak nothing else has a part in.
 fn alone(options: &Options) -> Result<(), AppError> {
     let program = std::env::current_exe().map_err(|error| AppError::Io(format!("this program cannot be found: {error}")))?;
@@ -108,46 +152,9 @@ fn alone(options: &Options) -> Result<(), AppError> {
     if status.success() { Ok(()) } else { Err(AppError::Differs("the memory bench failed".to_owned())) }
 }
 
-/// A power of n.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Power {
-    exponent: f64,
-    /// Root mean square of what the logarithms are off by: nearly a relative error.
-    residual: f64,
-}
-
-impl Power {
-    /// The least-squares line of log y = e log x + c; `None` for fewer than two sizes.
-    fn fit(x: &[f64], y: &[f64]) -> Option<Self> {
-        let n = x.len() as f64;
-        let mean = |values: &[f64]| values.iter().map(|v| v.ln()).sum::<f64>() / n;
-        let (mx, my) = (mean(x), mean(y));
-        let off = || x.iter().zip(y).map(|(x, y)| (x.ln() - mx, y.ln() - my));
-        let (over, under) = off().fold((0.0, 0.0), |(over, under), (dx, dy)| (over + dx * dy, under + dx * dx));
-        let exponent = over / under;
-        let residual = (off().map(|(dx, dy)| (dy - exponent * dx).powi(2)).sum::<f64>() / n).sqrt();
-        (x.len() >= 2 && under > 0.0).then_some(Self { exponent, residual })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_exponent_of_a_power_is_found() {
-        let x = [1e3, 1e4, 1e6];
-        let exact = Power::fit(&x, &x.map(|x: f64| 3.0 * x.powf(1.1))).unwrap();
-        assert!((exact.exponent - 1.1).abs() < 1e-9 && exact.residual < 1e-9, "{exact:?}");
-        assert_eq!(Power::fit(&x[..1], &x[..1]), None);
-    }
-
-    #[test]
-    fn the_residual_is_what_a_power_leaves() {
-        // 1, 2, 1 at equal steps: the line is level, and off by -1/3, 2/3 and -1/3 of ln 2.
-        let fit = Power::fit(&[1.0, 10.0, 100.0], &[1.0, 2.0, 1.0]).unwrap();
-        assert!(fit.exponent.abs() < 1e-12 && (fit.residual - 2f64.ln() * 2f64.sqrt() / 3.0).abs() < 1e-12, "{fit:?}");
-    }
 
     #[test]
     fn the_largest_scene_is_as_large_as_it_says() {

@@ -1,6 +1,6 @@
 //! The scenes that benches run on, with their rays.
 
-use super::rays::{RaySet, frame_rays, paper_rays};
+use super::rays::{RaySet, TILE, frame_rays, paper_rays};
 use crate::rendered::scene_path;
 use glam::DVec3;
 use gz_app::error::AppError;
@@ -46,7 +46,7 @@ pub fn bench_scene(name: &str) -> Result<BenchScene, AppError> {
     let (scene, needs) = scene_of(name)?;
     let tree = BspTree::build(&scene.tris);
     let is_paper = Path::new(name).file_stem().is_some_and(|stem| stem == PAPER);
-    let rays = if is_paper { paper_rays(&scene, &tree) } else { frame_rays(&scene, needs, &tree)? };
+    let rays = if is_paper { paper_rays(&scene, &tree) } else { frame_rays(&scene, needs, &tree, TILE)? };
     drop(tree);
     let stand_in = if is_paper && !has_course_data() { " (its stand-in: GZ_HW_DATA names no course data)" } else { "" };
     Ok(BenchScene { name: format!("{name}{stand_in}"), tris: scene.tris, rays })

@@ -6,9 +6,10 @@
 mod bytes;
 
 use crate::judge::{SETTINGS, Verdict, buffer, judge, truth_ray, truth_triangle};
-use crate::truth::{Meeting, Truth, plain};
+use crate::truth::{Found, Meeting, Truth, plain};
 use bytes::Bytes;
 use gz_bsp::{BspTree, CostStats, Midpoint, MidpointTree, TreeStats};
+use gz_core::glam::DVec3;
 use gz_core::{BruteForce, ClassMask, GzCoord, GzRay, GzTri, Hit, PerRay, RayBatch, RayQuery, SimdLevel, TriBuffer};
 
 /// The most triangles that [`trace`] takes.
@@ -46,8 +47,8 @@ pub fn trace(data: &[u8]) {
     }
 }
 
-/// Rays at edges, corners and insides of triangles that share them: no triangle that is truly hit is filtered out, alone or among others, at
-/// any SIMD level.
+/// Rays at edges, corners and insides of triangles that share them: no triangle that is truly hit is filtered out, alone, among others or for
+/// rays in company, at any SIMD level.
 pub fn filter_soundness(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let (scale, offset) = (bytes.power(40), bytes.power(20) * f32::from(bytes.byte() % 3));
@@ -86,12 +87,45 @@ pub fn filter_soundness(data: &[u8]) {
             let hit = BspTree::build(&tris).with_simd(level).closest_hit(&ray);
             assert_eq!(judge(&hit, expected), Verdict::Right, "{level:?}, tree: {ray:?} {hit:?} {expected:?}");
         }
+        in_company(&tris, &truth, origin, 1 + bytes.below(40), bytes.power(30));
         for corners in tris.positions() {
             let exact = truth_ray(&ray).line().and_then(|line| Meeting::of(&line, &truth_triangle(corners)));
             let alone = buffer([*corners]);
             for &level in SimdLevel::available() {
                 let found = BruteForce::new(&alone).with_simd(level).any_hit(&ray);
                 assert_eq!(found, exact.is_some(), "{level:?}: {ray:?} {corners:?}");
+            }
+        }
+    }
+}
+
+/// Asks the tree about `count` rays together, from `origin` or from within `apart` of it, at corners, edges and insides of all triangles.
+fn in_company(tris: &TriBuffer, truth: &Truth, origin: DVec3, count: usize, apart: f32) {
+    let aim = |k: usize| {
+        let [a, b, c] = tris.position((k / 3 % tris.len()) as u32).map(|p| p.as_dvec3());
+        let t = (k * 37 % 256) as f64 / 255.0;
+        [a, a + (b - a) * t, a + (b - a) * t + (c - b) * (t * t)][k % 3]
+    };
+    for apart in [0.0, f64::from(apart)] {
+        let origins: Vec<DVec3> = (0..count).map(|k| origin + DVec3::new(1.0, -0.5, 0.25) * (apart * k as f64)).collect();
+        let directions: Vec<GzCoord> = origins.iter().enumerate().map(|(k, origin)| (aim(k) - origin).as_vec3()).collect();
+        let from = if apart == 0.0 { PerRay::One(origin) } else { PerRay::Each(&origins[..]) };
+        let batch = RayBatch::unbounded(count, from, PerRay::Each(&directions));
+        let expected: Vec<Option<Found>> = (0..count).map(|k| truth.closest(&truth_ray(&batch.ray(k)))).collect();
+        for &level in SimdLevel::available() {
+            let tree = BspTree::build(tris).with_simd(level);
+            let (mut hits, mut any) = (vec![Hit::MISS; count], vec![false; count]);
+            tree.closest_hits(&batch, ClassMask::ALL, &mut hits);
+            tree.any_hits(&batch, ClassMask::ALL, &mut any);
+            for (k, expected) in expected.iter().enumerate() {
+                let verdict = judge(&hits[k], *expected);
+                assert_eq!(
+                    (verdict, any[k]),
+                    (Verdict::Right, expected.is_some()),
+                    "{level:?}: {:?} {:?}",
+                    batch.ray(k),
+                    hits[k]
+                );
             }
         }
     }
@@ -118,7 +152,7 @@ pub fn build_tree(data: &[u8]) {
     let tree = BspTree::build(&tris);
     tree.assert_well_formed();
     let stats = CostStats::of(&tree);
-    assert!(stats.references <= 64 * tris.len() && stats.nodes <= 64 * tris.len().max(1), "{stats:?}");
+    assert!(stats.references <= 5 * tris.len() + 64 && stats.nodes <= 64 * tris.len().max(1), "{stats:?}");
     for (max_depth, min_size) in SETTINGS {
         let setting = Midpoint { max_depth, min_size, node_budget: 1 << 12 };
         if let Ok(paper) = MidpointTree::build(&tris, setting) {

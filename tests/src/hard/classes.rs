@@ -1,6 +1,7 @@
 //! Classes of hard rays, in blocks that follow from a seed.
 
 use super::Dice;
+use super::company::Company;
 use super::meshes::{self, Corners, Mesh};
 use gz_core::glam::DVec3;
 use gz_core::{GzCoord, GzRay};
@@ -39,10 +40,18 @@ pub struct Block {
     pub triangles: Vec<Corners>,
     /// The rays, [`RAYS`] of them.
     pub rays: Vec<GzRay>,
+    /// What those of a run have in common.
+    pub company: Company,
 }
 
 /// Rays of a block.
 pub const RAYS: usize = 1024;
+
+/// Blocks in a row that differ in what their rays have in common.
+pub const TURNS: u64 = 4;
+
+/// Triangles, and rays from anywhere.
+type Scattered = (Vec<Corners>, Vec<GzRay>);
 
 impl Class {
     /// All of them.
@@ -77,8 +86,26 @@ impl Class {
         }
     }
 
-    /// Block `number` of this class; the same from the same seed.
+    /// Block `number` of this class; the same from the same seed. Of [`TURNS`] blocks in a row, the rays of all but one go in company.
     pub fn block(self, seed: u64, number: u64) -> Block {
+        let company = match number % TURNS {
+            0 => Company::None,
+            // These lose what is hard about them when they start elsewhere.
+            _ if matches!(self, Self::Grazing | Self::Axis | Self::InPlane) => Company::Way,
+            1 => Company::Origin,
+            2 => Company::Near,
+            _ => Company::Direction,
+        };
+        let (triangles, mut rays) = self.scattered(seed, number);
+        company.gather(&mut rays);
+        if self == Self::Scales {
+            with_other_lengths(&mut Dice::new(!seed ^ number), &mut rays);
+        }
+        Block { triangles, rays, company }
+    }
+
+    /// Triangles and rays from anywhere.
+    fn scattered(self, seed: u64, number: u64) -> Scattered {
         let start = seed ^ (number * Self::ALL.len() as u64 + self as u64 + 1).wrapping_mul(0xa076_1d64_78bd_642f);
         let mut dice = Dice::new(start);
         // A generator that has run a little: neighbouring starts are unrelated.
@@ -133,22 +160,22 @@ fn at_edge(dice: &mut Dice, mesh: &Mesh, edges: &[[usize; 2]]) -> DVec3 {
 }
 
 /// Rays from inside and from outside of a mesh at what `aim` gives; of the cube, exactly at it.
-fn mesh_rays(dice: &mut Dice, mesh: Mesh, aim: impl Fn(&mut Dice, &Mesh, &[[usize; 2]]) -> DVec3) -> Block {
+fn mesh_rays(dice: &mut Dice, mesh: Mesh, aim: impl Fn(&mut Dice, &Mesh, &[[usize; 2]]) -> DVec3) -> Scattered {
     let edges = mesh.edges();
     let rays = (0..RAYS)
         .map(|k| {
             let reach = if k % 4 == 0 { 20.0 } else { 0.5 };
             let target = aim(dice, &mesh, &edges);
             if mesh.points.len() == 98 {
-                // Whole numbers, and the middle of an edge as half of one: nothing is rounded.
+                // Whole numbers, the middle of an edge too: nothing is rounded.
                 let [a, b] = dice.pick(&edges).map(|k| mesh.points[k]);
                 let origin = dice.whole_point(if k % 4 == 0 { 20 } else { 5 });
-                return GzRay::new(origin, if k % 2 == 0 { a + b - origin * 2.0 } else { a - origin });
+                return GzRay::new(origin, if k % 2 == 0 { (a + b) * 0.5 - origin } else { a - origin });
             }
             shot(dice.point(reach), target, k)
         })
         .collect();
-    Block { triangles: mesh.triangles(), rays }
+    (mesh.triangles(), rays)
 }
 
 /// From an f32 origin, or from the f64 one itself.
@@ -171,7 +198,7 @@ fn on(dice: &mut Dice, corners: &Corners) -> DVec3 {
     a * wa + b * wb + c * wc
 }
 
-fn grazing(dice: &mut Dice) -> Block {
+fn grazing(dice: &mut Dice) -> Scattered {
     let mut triangles: Vec<Corners> = (0..40)
         .map(|_| std::array::from_fn(|_| (dice.point(1.0) * DVec3::new(5.6, 4.85, 0.7) + DVec3::Z * 3.0).as_vec3()))
         .collect();
@@ -194,17 +221,18 @@ fn grazing(dice: &mut Dice) -> Block {
             shot(target - d * f64::from(dice.between(1.0, 600.0)), target, k)
         })
         .collect();
-    Block { triangles, rays }
+    (triangles, rays)
 }
 
-fn needles(dice: &mut Dice) -> Block {
+fn needles(dice: &mut Dice) -> Scattered {
     let triangles: Vec<Corners> = (0..40)
         .flat_map(|_| {
             let (aspect, centre) = (dice.magnitude(2.0, 7.0), dice.point(3.0));
             meshes::needles(dice, aspect, centre)
         })
         .collect();
-    Block { rays: aimed(dice, &triangles, 10.0), triangles }
+    let rays = aimed(dice, &triangles, 10.0);
+    (triangles, rays)
 }
 
 /// Rays at triangles from up to `away` from them.
@@ -218,7 +246,7 @@ fn aimed(dice: &mut Dice, triangles: &[Corners], away: f64) -> Vec<GzRay> {
         .collect()
 }
 
-fn axis(dice: &mut Dice) -> Block {
+fn axis(dice: &mut Dice) -> Scattered {
     let mut triangles = meshes::soup(dice, 100, 0.4);
     triangles.extend(meshes::integer_field(dice, 6).iter().map(|t| t.map(|p| p * 0.25 - 0.75)));
     let rays = (0..RAYS)
@@ -234,10 +262,10 @@ fn axis(dice: &mut Dice) -> Block {
             GzRay::new(target - direction * dice.between(0.5, 3.0), direction)
         })
         .collect();
-    Block { triangles, rays }
+    (triangles, rays)
 }
 
-fn in_plane(dice: &mut Dice) -> Block {
+fn in_plane(dice: &mut Dice) -> Scattered {
     let mut triangles = meshes::soup(dice, 60, 0.5);
     // Walls across the axes at halves and quarters of the box, where cuts fall, and triangles that touch them.
     for k in 0..40 {
@@ -271,10 +299,10 @@ fn in_plane(dice: &mut Dice) -> Block {
         })
         .map(|ray| if ray.direction == GzCoord::ZERO { GzRay { direction: GzCoord::X, ..ray } } else { ray })
         .collect();
-    Block { triangles, rays }
+    (triangles, rays)
 }
 
-fn offsets(dice: &mut Dice) -> Block {
+fn offsets(dice: &mut Dice) -> Scattered {
     let offset = dice.direction() * dice.pick(&[1e2, 1e3, 1e4, 1e5, 1e6]);
     if dice.below(3) == 0 {
         let mesh = closed(dice, offset);
@@ -283,28 +311,32 @@ fn offsets(dice: &mut Dice) -> Block {
             if dice.below(2) == 0 { at_edge(dice, &mesh, &edges) } else { mesh.points[dice.below(mesh.points.len())].as_dvec3() }
         };
         let rays = (0..RAYS).map(|k| shot(offset + dice.point(if k % 4 == 0 { 20.0 } else { 0.5 }), aim(dice), k)).collect();
-        return Block { triangles: mesh.triangles(), rays };
+        return (mesh.triangles(), rays);
     }
     let place = |p: GzCoord| (p.as_dvec3() * 4.0 + offset).as_vec3();
     let triangles: Vec<Corners> = meshes::soup(dice, 200, 0.5).iter().map(|corners| corners.map(place)).collect();
-    Block { rays: aimed(dice, &triangles, 12.0), triangles }
+    let rays = aimed(dice, &triangles, 12.0);
+    (triangles, rays)
 }
 
-fn scaled(dice: &mut Dice) -> Block {
-    let (scale, length) = (dice.magnitude(-18.0, 18.0), dice.magnitude(-3.0, 3.0));
+fn scaled(dice: &mut Dice) -> Scattered {
+    let scale = dice.magnitude(-18.0, 18.0);
     let triangles: Vec<Corners> =
         meshes::soup(dice, 150, 0.5).iter().map(|corners| corners.map(|p| (p.as_dvec3() * scale).as_vec3())).collect();
-    let mut rays = aimed(dice, &triangles, 3.0 * scale);
-    // Directions of another length than the way: of the scale or near 1.
-    for (k, ray) in rays.iter_mut().enumerate() {
-        if k % 2 == 0 {
-            ray.direction = (ray.direction.as_dvec3() / scale * length).as_vec3();
-        }
-    }
-    Block { triangles, rays }
+    let rays = aimed(dice, &triangles, 3.0 * scale);
+    (triangles, rays)
 }
 
-fn duplicates(dice: &mut Dice) -> Block {
+/// Gives every other ray a direction of another length than the way to where it is aimed: near 1, whatever the scale of the scene.
+fn with_other_lengths(dice: &mut Dice, rays: &mut [GzRay]) {
+    let longest = rays.iter().map(|ray| f64::from(ray.direction.abs().max_element())).fold(0.0, f64::max);
+    let factor = dice.magnitude(-3.0, 3.0) / longest;
+    for ray in rays.iter_mut().step_by(2) {
+        ray.direction = (ray.direction.as_dvec3() * factor).as_vec3();
+    }
+}
+
+fn duplicates(dice: &mut Dice) -> Scattered {
     let mut triangles = meshes::soup(dice, 40, 0.6);
     for k in 0..40 {
         let [a, b, c] = triangles[k];
@@ -321,10 +353,11 @@ fn duplicates(dice: &mut Dice) -> Block {
             GzCoord::new(p.x, p.y, 0.5 * p.x + p.y + 0.25)
         })
     }));
-    Block { rays: aimed(dice, &triangles, 4.0), triangles }
+    let rays = aimed(dice, &triangles, 4.0);
+    (triangles, rays)
 }
 
-fn grids(dice: &mut Dice) -> Block {
+fn grids(dice: &mut Dice) -> Scattered {
     let size = 4 + dice.below(8);
     let triangles = meshes::integer_field(dice, size);
     let rays = (0..RAYS)
@@ -344,10 +377,10 @@ fn grids(dice: &mut Dice) -> Block {
             GzRay::new(origin, if direction == GzCoord::ZERO { GzCoord::NEG_Z } else { direction })
         })
         .collect();
-    Block { triangles, rays }
+    (triangles, rays)
 }
 
-fn random(dice: &mut Dice) -> Block {
+fn random(dice: &mut Dice) -> Scattered {
     let size = dice.magnitude(-1.0, 0.3);
     let triangles = meshes::soup(dice, 256, size);
     let rays = (0..RAYS)
@@ -360,7 +393,7 @@ fn random(dice: &mut Dice) -> Block {
             }
         })
         .collect();
-    Block { triangles, rays }
+    (triangles, rays)
 }
 
 #[cfg(test)]
@@ -372,13 +405,16 @@ mod tests {
     #[test]
     fn blocks_follow_from_their_seed_and_hit_something() {
         for class in Class::ALL {
-            let (block, again, other) = (class.block(1, 7), class.block(1, 7), class.block(1, 8));
-            assert!(block.triangles == again.triangles && block.rays == again.rays, "{class:?}");
-            assert!(block.rays.len() == RAYS && block.rays != other.rays && block.triangles.len() >= 6, "{class:?}");
-            let hits = settled(class.name(), &buffer(block.triangles.iter().copied()), &block.rays[..200]);
-            let count = hits.iter().filter(|hit| hit.is_hit()).count();
-            assert!(count > 20, "{class:?}: {count} of 200 hit");
-            assert!(block.rays.iter().filter(|ray| truth_ray(ray).line().is_some()).count() > RAYS / 2, "{class:?}");
+            for number in 4..4 + TURNS {
+                let (block, again, other) = (class.block(1, number), class.block(1, number), class.block(1, number + TURNS));
+                assert!(block.triangles == again.triangles && block.rays == again.rays, "{class:?}");
+                assert!(block.rays.len() == RAYS && block.rays != other.rays && block.triangles.len() >= 6, "{class:?}");
+                let some: Vec<GzRay> = block.rays.iter().copied().step_by(5).collect();
+                let hits = settled(class.name(), &buffer(block.triangles.iter().copied()), &some);
+                let count = hits.iter().filter(|hit| hit.is_hit()).count();
+                assert!(count > 20, "{class:?}, {:?}: {count} of {} hit", block.company, some.len());
+                assert!(block.rays.iter().filter(|ray| truth_ray(ray).line().is_some()).count() > RAYS / 2, "{class:?}");
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Inputs that are hard on the arithmetic: meshes, rays, and ways off a surface, all from a seed.
 
 pub mod classes;
+pub mod company;
 mod departures;
 pub mod dice;
 pub mod leaving;

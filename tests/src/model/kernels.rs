@@ -55,7 +55,7 @@ pub struct PlaneErrors {
 }
 
 /// Every primary ray of `scene`, with its exact hit.
-pub(super) fn primary(scene: &Scene) -> impl Iterator<Item = (GzRay, Hit)> + '_ {
+pub(crate) fn primary(scene: &Scene) -> impl Iterator<Item = (GzRay, Hit)> + '_ {
     let hits = TBuffer::trace(&scene.camera, &BspTree::build(&scene.tris)).hits;
     let width = scene.camera.width();
     (0..).zip(hits).map(move |(k, hit)| (scene.camera.ray(k % width, k / width, DVec2::ZERO), hit))

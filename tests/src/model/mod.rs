@@ -13,8 +13,10 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 pub use fresnel::{AngleError, angle_error};
+pub(crate) use kernels::primary as primary_hits;
 pub use kernels::{Errors, PlaneErrors, RoundingErrors, plane_errors, rounding_errors};
 pub use leaving::{LeavingErrors, leaving_errors};
+pub(crate) use pictures::{Shot, placed, shot, shot_by, sized};
 pub use quick::{patch_errors, write_error};
 
 /// A table of the page.

@@ -13,13 +13,13 @@ use gz_core::{CameraModel, RayQuery};
 use gz_shade::{Antialias, ColorCode, Eye, Frame, FrameStats, Fresnel, Scene, SceneNeeds, ShadeRules, ShadowRule};
 
 /// A picture as it is computed and as it is written.
-pub(super) struct Shot {
-    pub(super) frame: Frame,
-    code: ColorCode,
+pub(crate) struct Shot {
+    pub(crate) frame: Frame,
+    pub(crate) code: ColorCode,
 }
 
 /// Renders a scene of `assets/scenes` through the tree.
-fn shot(name: &str, overrides: &Overrides) -> Result<Shot, LoadError> {
+pub(crate) fn shot(name: &str, overrides: &Overrides) -> Result<Shot, LoadError> {
     shot_by_rules(name, overrides, |_| {})
 }
 
@@ -33,19 +33,19 @@ fn shot_by_rules(name: &str, overrides: &Overrides, change: impl FnOnce(&mut Sha
 }
 
 /// A scene of `assets/scenes`, placed.
-pub(super) fn placed(name: &str, overrides: &Overrides) -> Result<(Scene, SceneNeeds), LoadError> {
+pub(crate) fn placed(name: &str, overrides: &Overrides) -> Result<(Scene, SceneNeeds), LoadError> {
     let draft = load::scene(&scene_path(name), overrides)?;
     let needs = SceneNeeds::of(&draft.scene);
     Ok((draft.place(needs)?, needs))
 }
 
 /// Renders `scene` by any query.
-pub(super) fn shot_by(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery) -> Shot {
+pub(crate) fn shot_by(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery) -> Shot {
     Shot { frame: scenes::shade(scene, needs, query, 32), code: scene.rules.color_code }
 }
 
 /// Overrides with one sample a pixel.
-pub(super) const fn sized(width: u32, height: u32) -> Overrides {
+pub(crate) const fn sized(width: u32, height: u32) -> Overrides {
     Overrides { size: Some((width, height)), aa: Some(Antialias::None), ..Overrides::NONE }
 }
 
@@ -64,13 +64,17 @@ impl Shot {
         Picture::of_bytes(width, height, &rgb8(&self.frame.colors, self.code))
     }
 
-    /// The cells of [`COLUMNS`]: how far this picture is from `reference`.
-    pub(super) fn against(&self, reference: &Self) -> Vec<String> {
+    /// How far this picture is from `reference`, before encoding and as written.
+    pub(crate) fn differences(&self, reference: &Self) -> (Difference, Difference) {
         let found = |a: &Picture, b: &Picture| -> Difference {
             pictures(a, b, 0.0).unwrap_or_else(|reason| unreachable!("two renders of one scene: {reason}"))
         };
-        let linear = found(&reference.linear(), &self.linear());
-        let bytes = found(&reference.bytes(), &self.bytes());
+        (found(&reference.linear(), &self.linear()), found(&reference.bytes(), &self.bytes()))
+    }
+
+    /// The cells of [`COLUMNS`]: how far this picture is from `reference`.
+    pub(super) fn against(&self, reference: &Self) -> Vec<String> {
+        let (linear, bytes) = self.differences(reference);
         let share = 100.0 * bytes.differing as f64 / bytes.pixels as f64;
         let cells = [figure(linear.rmse), figure(bytes.rmse), format!("{}", bytes.max), format!("{share:.1} %")];
         cells.into_iter().chain([bytes.pixels.to_string()]).collect()

@@ -45,15 +45,20 @@ pub fn verify_rays(options: &RayOptions) -> Result<(), AppError> {
 
 /// Nothing wrong, and at most 1 in a million undecided, but for hits exactly on edges.
 fn is_clean((label, outcome): &(Label, Outcome)) -> bool {
-    let exact = outcome.exact();
     let decided = *label == Label::F5 || outcome.undecided * 1_000_000 <= outcome.cases;
-    exact.acne + exact.leaks + outcome.source_met == 0 && decided
+    outcome.is_clean() && decided
+}
+
+/// One ray in so many is judged: at least as many as was asked for. An odd number has no factor in common with the rays of a block, so that
+/// every place in a block has its turn.
+fn stride(options: &RayOptions) -> u64 {
+    (options.count / options.truth.max(1)).saturating_sub(1) | 1
 }
 
 fn classes(options: &RayOptions) -> Result<Vec<Record>, AppError> {
     let each = options.classes.len() as u64 * RAYS as u64;
     let rounds = options.count.div_ceil(each);
-    let stride = (options.count / options.truth.max(1)).max(1);
+    let stride = stride(options);
     let (mut state, said) = State::new(options, stride).resumed(options);
     println!("{said}; {} rays in {rounds} rounds of {} classes, 1 in {stride} judged", rounds * each, options.classes.len());
     let (start, done_before) = (Instant::now(), state.rounds);
@@ -102,6 +107,17 @@ fn leaving(options: &RayOptions) -> Vec<(Label, Outcome)> {
 mod tests {
     use super::*;
     use crate::folder::Folder;
+
+    #[test]
+    fn every_place_in_a_block_is_judged_in_its_turn() {
+        let parse = |text: &str| RayOptions::parse(&text.split(' ').map(str::to_owned).collect::<Vec<_>>()).unwrap();
+        for (words, expected) in [("--count 1e8", 99), ("--count 4e6", 3), ("--count 1e5", 1), ("--count 1e9 --truth 1e7", 99)] {
+            assert_eq!(stride(&parse(words)), expected);
+        }
+        let mut judged = [false; RAYS];
+        (0..99 * RAYS).step_by(99).for_each(|k| judged[k % RAYS] = true);
+        assert!(judged.iter().all(|judged| *judged));
+    }
 
     #[test]
     fn a_small_run_is_clean_and_goes_on_where_it_stopped() {

@@ -1,10 +1,12 @@
 //! What is counted over blocks of hard rays.
 
-use crate::hard::classes::{Block, Class};
+use crate::hard::classes::{Block, Class, TURNS};
+use crate::hard::company::{Company, RUN};
 use crate::judge::{Tally, buffer, truth_ray, truth_triangles};
 use crate::truth::Truth;
 use gz_bsp::{BspTree, Midpoint, MidpointTree};
 use gz_core::{BruteForce, ClassMask, Hit, Kernel, PerRay, RayBatch, RayQuery, SimdLevel, TriBuffer};
+use std::ops::Range;
 
 /// The tests that are there for comparison.
 pub const KERNELS: [Kernel; 7] = [
@@ -55,23 +57,30 @@ impl Record {
 
     /// Block `number` of a class; every `stride`-th ray is judged by the truth.
     ///
-    /// Blocks take turns in SIMD level and in whether rays come as a batch or one by one; every eighth asks the paper's tree too.
+    /// The tree is asked at every SIMD level; levels take turns in whether rays come as a batch or one by one, and in answering by brute
+    /// force. Every seventh block asks the paper's tree too.
     pub fn of(class: Class, seed: u64, number: u64, stride: u64) -> Self {
         let block = class.block(seed, number);
         let tris = buffer(block.triangles.iter().copied());
         let mut record = Self { rays: block.rays.len() as u64, ..Self::default() };
-        let brute = BruteForce::new(&tris);
+        // Whatever the rays of a block have in common, it has every turn.
+        let (levels, turn) = (SimdLevel::available(), (number / TURNS) as usize);
+        let brute = BruteForce::new(&tris).with_simd(levels[turn % levels.len()]);
         let hits = together(&brute, &block);
-        let levels = SimdLevel::available();
-        let tree = BspTree::build(&tris).with_simd(levels[number as usize % levels.len()]);
-        let alone = |query: &dyn RayQuery| block.rays.iter().map(|ray| query.closest_hit(ray)).collect::<Vec<_>>();
-        let found = if number.is_multiple_of(2) { together(&tree, &block) } else { alone(&tree) };
-        record.differing = differing(&tree, &block, &hits, &found);
-        if number.is_multiple_of(8) {
+        let mut differs = vec![false; block.rays.len()];
+        let mut tree = BspTree::build(&tris);
+        for (k, &level) in levels.iter().enumerate() {
+            tree = tree.with_simd(level);
+            let found = if (turn + k).is_multiple_of(2) { together(&tree, &block) } else { alone(&tree, &block) };
+            compare(&tree, &block, &hits, &found, &mut differs);
+        }
+        record.differing = count(&differs);
+        if number.is_multiple_of(7) {
             let setting = Midpoint { max_depth: 10, min_size: 3, node_budget: 1 << 14 };
             if let Ok(paper) = MidpointTree::build(&tris, setting) {
-                record.midpoint = record.rays;
-                record.midpoint_differing = differing(&paper, &block, &hits, &together(&paper, &block));
+                differs.fill(false);
+                compare(&paper, &block, &hits, &together(&paper, &block), &mut differs);
+                (record.midpoint, record.midpoint_differing) = (record.rays, count(&differs));
             }
         }
         record.judge(&block, &tris, &hits, number, stride);
@@ -100,24 +109,52 @@ impl Record {
 
 fn together(query: &dyn RayQuery, block: &Block) -> Vec<Hit> {
     let mut hits = vec![Hit::MISS; block.rays.len()];
-    with_batch(block, |batch| query.closest_hits(batch, ClassMask::ALL, &mut hits));
+    each_batch(block, |place, batch| query.closest_hits(batch, ClassMask::ALL, &mut hits[place]));
     hits
 }
 
-/// Rays whose front-most hit or whose occlusion differs from `expected`.
-fn differing(query: &dyn RayQuery, block: &Block, expected: &[Hit], found: &[Hit]) -> u64 {
-    let mut occluded = vec![false; block.rays.len()];
-    with_batch(block, |batch| query.any_hits(batch, ClassMask::ALL, &mut occluded));
-    let bits = |hit: &Hit| [hit.t.to_bits(), hit.tri, hit.u.to_bits(), hit.v.to_bits()];
-    let differs = |((a, b), any): &((&Hit, &Hit), &bool)| bits(a) != bits(b) || **any != a.is_hit();
-    expected.iter().zip(found).zip(&occluded).filter(differs).count() as u64
+fn alone(query: &dyn RayQuery, block: &Block) -> Vec<Hit> {
+    block.rays.iter().map(|ray| query.closest_hit(ray)).collect()
 }
 
-fn with_batch(block: &Block, ask: impl FnOnce(&RayBatch<'_>)) {
-    let (origins, directions): (Vec<_>, Vec<_>) = block.rays.iter().map(|ray| (ray.origin, ray.direction)).unzip();
-    let (tmin, tmax): (Vec<_>, Vec<_>) = block.rays.iter().map(|ray| (ray.tmin, ray.tmax)).unzip();
-    let (origin, direction) = (PerRay::Each(&origins[..]), PerRay::Each(&directions[..]));
-    ask(&RayBatch::new(block.rays.len(), origin, direction, PerRay::Each(&tmin), PerRay::Each(&tmax)));
+/// Marks the rays whose front-most hit or whose occlusion differs from `expected`.
+fn compare(query: &dyn RayQuery, block: &Block, expected: &[Hit], found: &[Hit], differs: &mut [bool]) {
+    let mut occluded = vec![false; block.rays.len()];
+    each_batch(block, |place, batch| query.any_hits(batch, ClassMask::ALL, &mut occluded[place]));
+    let bits = |hit: &Hit| [hit.t.to_bits(), hit.tri, hit.u.to_bits(), hit.v.to_bits()];
+    for (k, differs) in differs.iter_mut().enumerate() {
+        *differs |= bits(&expected[k]) != bits(&found[k]) || occluded[k] != expected[k].is_hit();
+    }
+}
+
+fn count(marked: &[bool]) -> u64 {
+    marked.iter().filter(|marked| **marked).count() as u64
+}
+
+/// The rays of a block as the batches that they are asked in, and the place of each: all at once, or run by run, and then what the rays of
+/// a run share is said once.
+fn each_batch(block: &Block, mut ask: impl FnMut(Range<usize>, &RayBatch<'_>)) {
+    let at_a_time = if block.company == Company::None { block.rays.len() } else { RUN };
+    for (from, rays) in (0..).step_by(at_a_time).zip(block.rays.chunks(at_a_time)) {
+        let (origins, directions): (Vec<_>, Vec<_>) = rays.iter().map(|ray| (ray.origin, ray.direction)).unzip();
+        let (tmin, tmax): (Vec<_>, Vec<_>) = rays.iter().map(|ray| (ray.tmin, ray.tmax)).unzip();
+        let batch = RayBatch::new(
+            rays.len(),
+            shared(&origins, |p| p.to_array().map(f64::to_bits)),
+            shared(&directions, |d| d.to_array().map(f32::to_bits)),
+            shared(&tmin, |t| t.to_bits()),
+            shared(&tmax, |t| t.to_bits()),
+        );
+        ask(from..from + rays.len(), &batch);
+    }
+}
+
+/// One value where all are equal to the bit.
+fn shared<T: Copy, B: PartialEq>(values: &[T], bits: impl Fn(&T) -> B) -> PerRay<'_, T> {
+    match values.first() {
+        Some(first) if values.iter().all(|value| bits(value) == bits(first)) => PerRay::One(*first),
+        _ => PerRay::Each(values),
+    }
 }
 
 #[cfg(test)]
@@ -137,14 +174,43 @@ mod tests {
 
     #[test]
     fn what_differs_is_counted() {
-        // A query that knows one triangle less.
-        let block = Class::Random.block(1, 1);
-        let (whole, part) = (buffer(block.triangles.iter().copied()), buffer(block.triangles[1..].iter().copied()));
-        let (brute, poor) = (BruteForce::new(&whole), BruteForce::new(&part));
-        let hits = together(&brute, &block);
-        assert_eq!(differing(&brute, &block, &hits, &together(&brute, &block)), 0);
-        // Every number is another one.
-        let hit = hits.iter().filter(|hit| hit.is_hit()).count() as u64;
-        assert!(hit > 100 && differing(&poor, &block, &hits, &together(&poor, &block)) == hit);
+        // A query that knows one triangle less: every number is another one.
+        for number in 0..TURNS {
+            let block = Class::Random.block(1, number);
+            let (whole, part) = (buffer(block.triangles.iter().copied()), buffer(block.triangles[1..].iter().copied()));
+            let (brute, poor) = (BruteForce::new(&whole), BruteForce::new(&part));
+            let hits = together(&brute, &block);
+            let differing = |query: &dyn RayQuery, found: &[Hit]| {
+                let mut differs = vec![false; block.rays.len()];
+                compare(query, &block, &hits, found, &mut differs);
+                count(&differs)
+            };
+            assert_eq!(differing(&brute, &together(&brute, &block)), 0);
+            let hit = hits.iter().filter(|hit| hit.is_hit()).count() as u64;
+            assert!(hit > 100 && differing(&poor, &together(&poor, &block)) == hit);
+            // And one that answers right but for whether anything is hit.
+            let less = differing(&BruteForce::new(&buffer([])), &hits);
+            assert_eq!(less, hit);
+        }
+    }
+
+    #[test]
+    fn batches_say_once_what_their_rays_share() {
+        let mut common = [0; 3];
+        for number in 0..8 {
+            for class in [Class::Edges, Class::Needles] {
+                let block = class.block(5, number);
+                each_batch(&block, |place, batch| {
+                    common[0] += 1;
+                    common[1] += usize::from(matches!(batch.origin, PerRay::One(_)));
+                    common[2] += usize::from(matches!(batch.direction, PerRay::One(_)));
+                    for (k, ray) in place.zip(0..) {
+                        assert_eq!(block.rays[k], batch.ray(ray));
+                    }
+                });
+            }
+        }
+        // Two blocks of each class as they come; of the others 16 runs each, a third of them from one point, a third in one direction.
+        assert_eq!(common, [4 + 12 * 16, 4 * 16, 4 * 16]);
     }
 }

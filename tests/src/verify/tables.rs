@@ -65,7 +65,7 @@ pub(super) fn classes(options: &RayOptions, records: &[Record]) -> String {
 
 /// What each comparison kernel gets wrong, a line a class.
 pub(super) fn kernels(options: &RayOptions, records: &[Record]) -> String {
-    let mut text = "wrong answers of the comparison kernels per million judged rays: hit or miss / triangle / greatest error of T in steps of f32\n".to_owned();
+    let mut text = "wrong answers of the comparison kernels per million of the judged rays: hit or miss / triangle / greatest error of T in steps of f32\n".to_owned();
     let mut line = |name: &str, cells: [String; KERNELS.len()]| {
         let _ = write!(text, "{name:<11}");
         for cell in cells {
@@ -92,8 +92,8 @@ pub(super) fn kernels(options: &RayOptions, records: &[Record]) -> String {
 /// Leaving a surface, a line a label.
 pub(super) fn leaving(outcomes: &[(Label, Outcome)]) -> String {
     let mut text = format!(
-        "{:<5} {:<36} {:>9} {:>9} {:>9} {:>18} {:>18}",
-        "leave", "", "cases", "blocked", "undecided", "acne", "light leaks"
+        "{:<5} {:<36} {:>9} {:>9} {:>9} {:>18} {:>18} {:>18} {:>18}",
+        "leave", "", "cases", "blocked", "undecided", "acne", "light leaks", "tree != brute", "no start, or met"
     );
     for policy in &LeavePolicy::ALL[1..] {
         let _ = write!(text, " {:>19}", leave_name(*policy));
@@ -104,11 +104,13 @@ pub(super) fn leaving(outcomes: &[(Label, Outcome)]) -> String {
         let exact = outcome.exact();
         let _ = write!(
             text,
-            "{:<5} {:<36} {cases:>9} {blocked:>9} {undecided:>9} {:>18} {:>18}",
+            "{:<5} {:<36} {cases:>9} {blocked:>9} {undecided:>9} {:>18} {:>18} {:>18} {:>18}",
             format!("{label:?}"),
             label.what(),
             bounded(exact.acne, cases),
-            bounded(exact.leaks, cases)
+            bounded(exact.leaks, cases),
+            bounded(outcome.differing, cases),
+            bounded(outcome.lost + outcome.source_met, cases)
         );
         for wrong in &outcome.wrong[1..] {
             let _ = write!(text, " {:>19}", format!("{} / {}", wrong.acne, wrong.leaks));

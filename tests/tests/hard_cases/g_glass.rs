@@ -164,7 +164,7 @@ fn g06_total_reflection_has_no_direction() {
 fn exact(label: Label) -> [Wrong; LeavePolicy::ALL.len()] {
     let outcome = run(label, label as u64, 6000);
     println!("{label:?}: {} cases, {} blocked, wrong by policy {:?}", outcome.cases, outcome.blocked, outcome.wrong);
-    assert_eq!((outcome.cases, outcome.undecided, outcome.exact(), outcome.source_met), (6000, 0, Wrong::default(), 0));
+    assert!((outcome.cases, outcome.undecided) == (6000, 0) && outcome.is_clean(), "{outcome:?}");
     assert!(outcome.blocked > 5990, "there is another face");
     outcome.wrong
 }

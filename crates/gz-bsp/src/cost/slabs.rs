@@ -93,7 +93,8 @@ impl BundleSlabs {
     /// One ray by itself.
     #[inline(always)]
     pub(super) fn alone(&self, p: usize, lane: usize, tmin: f32) -> Slabs {
-        let (inverse, enter, leave) = (of_ray(&self.inverse, p, lane), of_ray(&self.enter, p, lane), of_ray(&self.leave, p, lane));
+        let (inverse, enter, leave) =
+            (of_ray(&self.inverse, p, lane), of_ray(&self.enter, p, lane), of_ray(&self.leave, p, lane));
         Slabs { way: self.way(p, lane), inverse, enter, leave, tmin }
     }
 }

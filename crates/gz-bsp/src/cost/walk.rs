@@ -125,7 +125,8 @@ impl Quest for Blocked<'_> {
 
     #[inline(always)]
     fn take(&mut self, found: &Candidates, lane: usize, tri: TriId) -> Option<f32> {
-        self.found = tri != self.leaves && self.targets.sees(tri) && found.is_hit(lane, self.ray, self.ends, self.targets.position(tri));
+        self.found =
+            tri != self.leaves && self.targets.sees(tri) && found.is_hit(lane, self.ray, self.ends, self.targets.position(tri));
         (!self.found).then_some(self.ends[1])
     }
 

@@ -26,11 +26,7 @@ pub(super) struct Bounded<F> {
 /// The products of b x c, for rounded differences b, c: what is added and what is subtracted along each axis.
 #[inline(always)]
 fn products<F: Doubles>(b: [F; 3], c: [F; 3]) -> [[F; 2]; 3] {
-    [
-        [b[1].times(c[2]), b[2].times(c[1])],
-        [b[2].times(c[0]), b[0].times(c[2])],
-        [b[0].times(c[1]), b[1].times(c[0])],
-    ]
+    [[b[1].times(c[2]), b[2].times(c[1])], [b[2].times(c[0]), b[0].times(c[2])], [b[0].times(c[1]), b[1].times(c[0])]]
 }
 
 /// d.(b x c) from [`products`].

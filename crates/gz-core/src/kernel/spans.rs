@@ -96,3 +96,84 @@ fn span<S: Simd>(each: &Each, company: &Rays) -> Span {
     }
     Span::new(least.least(), greatest.greatest())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::together::Prepared;
+    use super::super::{BUNDLE, FilterSpace, LANES, TriGroup, is_hit};
+    use super::*;
+    use crate::simd::{SimdLevel, Task, dispatch};
+    use crate::{Bounds, GzCoord, PerRay, RayBatch};
+    use glam::DVec3;
+
+    /// The triangles of `group` that rays of `batch` may hit, for its rays at even places or for all.
+    struct Ask<'a>(&'a RayBatch<'a>, &'a TriGroup, &'a FilterSpace, bool);
+
+    impl Task for Ask<'_> {
+        type Output = u32;
+
+        #[inline(always)]
+        fn run<S: Simd>(self) -> u32 {
+            let Self(batch, group, space, half) = self;
+            let mut bundle = RayBundle::empty();
+            let mut company = bundle.gather::<S>(batch, 0, batch.len(), space);
+            for rays in &mut company {
+                *rays &= if half { 0x5555 } else { !0 };
+            }
+            let spans = Spans::of::<S>(&bundle, &company);
+            Prepared::of::<S>(group, &bundle, &spans).worth
+        }
+    }
+
+    #[test]
+    fn no_triangle_that_a_ray_of_the_set_hits_is_left_out_and_most_others_are() {
+        let mut state = 5u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / (1u64 << 24) as f32
+        };
+        let (mut hit, mut kept, mut asked) = (0, 0, 0);
+        for round in 0..600 {
+            let offset = [0.0, 30.0, 1e4][round % 3];
+            let size = [0.5, 1e-1, 1e-3][round / 3 % 3];
+            // How far the rays are apart where they arrive: not at all, a little, as far as anything.
+            let spread = [0.0, 1e-3, 0.05, 1.0][round % 4];
+            let mut point = |s: f32| GzCoord::new(unit(), unit(), unit()) * s + offset;
+            let positions: Vec<[GzCoord; 3]> = (0..8)
+                .map(|_| {
+                    let p = point(1.0);
+                    [p, p + (point(size) - offset), p + (point(size) - offset)]
+                })
+                .collect();
+            let space = FilterSpace::new(Bounds::of(positions.iter().flatten().copied()).reaches());
+            let group = TriGroup::new(&[0, 1, 2, 3, 4, 5, 6, 7], &positions, &space);
+            let [a, b, c] = positions[round % 8];
+            // A corner, the middle of an edge, the middle.
+            let target = [a, (a + b) * 0.5, (a + b + c) / 3.0][round % 3];
+            let from = (point(1.0) - GzCoord::Z * 2.0).as_dvec3();
+            let one = target - from.as_vec3();
+            let mut origins = [from; BUNDLE];
+            let mut directions = [one; BUNDLE];
+            for (o, d) in origins.iter_mut().zip(&mut directions) {
+                *d = one + (point(spread) - offset);
+                *o = from + (point(spread) - offset).as_dvec3() * 1e-3;
+            }
+            let origin: PerRay<DVec3> = if round % 5 == 0 { PerRay::One(from) } else { PerRay::Each(&origins) };
+            let direction: PerRay<GzCoord> = if round % 5 == 1 { PerRay::One(one) } else { PerRay::Each(&directions) };
+            let batch = RayBatch::unbounded(BUNDLE, origin, direction);
+            for &level in SimdLevel::available() {
+                for half in [false, true] {
+                    let worth = dispatch(level, Ask(&batch, &group, &space, half));
+                    for (lane, corners) in positions.iter().enumerate() {
+                        let any = (0..BUNDLE).any(|i| !(half && i % LANES % 2 == 1) && is_hit(&batch.ray(i), corners));
+                        assert!(!any || worth >> lane & 1 != 0, "{level:?} round {round} lane {lane} half {half}");
+                        hit += u32::from(any);
+                        kept += worth >> lane & 1;
+                        asked += 1;
+                    }
+                }
+            }
+        }
+        assert!(hit > 1500 && kept < asked / 2, "{hit} hit, {kept} kept of {asked}");
+    }
+}

@@ -251,7 +251,7 @@ struct Lines<L> {
 }
 
 /// What a group's triangles have in common for all rays of a bundle: e2 x A, A x e1 and the normal for A seen from the centre.
-struct Prepared {
+pub(super) struct Prepared {
     p: [[f32; 8]; 3],
     q: [[f32; 8]; 3],
     normal: [[f32; 8]; 3],
@@ -261,12 +261,12 @@ struct Prepared {
     depth_error: [f32; 8],
     along_error: [f32; 8],
     /// Triangles that not all rays of the set surely miss.
-    worth: u32,
+    pub(super) worth: u32,
 }
 
 impl Prepared {
     #[inline(always)]
-    fn of<S: Simd>(group: &TriGroup, bundle: &RayBundle, spans: &Spans) -> Self {
+    pub(super) fn of<S: Simd>(group: &TriGroup, bundle: &RayBundle, spans: &Spans) -> Self {
         let (e1, e2) = (load3::<8, S::Eight>(&group.e1), load3(&group.e2));
         let a: [S::Eight; 3] = minus3(load3(&group.a), splat3(bundle.centre));
         let (size, away) = (<S::Eight>::load(&group.size), a[0].abs().max(a[1].abs()).max(a[2].abs()));

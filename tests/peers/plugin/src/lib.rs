@@ -6,7 +6,7 @@ mod rays;
 
 use gz_bsp::BspTree;
 use gz_core::{ClassMask, GzCoord, Hit, RayQuery, TriBuffer, with_default_float_control};
-use rays::{BATCH, PeerRay, Scratch};
+use rays::{BATCH, Given, PeerRay, PeerRay64, Scratch};
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::mem::ManuallyDrop;
@@ -22,7 +22,8 @@ struct Peer {
 // SAFETY: the pointer stands for a box of a `TriBuffer`, which may be sent, and so may the tree.
 unsafe impl Send for Peer {}
 
-const _: () = assert!(size_of::<Hit>() == 16 && size_of::<PeerRay>() == 32, "the interface says so");
+const _: () =
+    assert!(size_of::<Hit>() == 16 && size_of::<PeerRay>() == 32 && size_of::<PeerRay64>() == 48, "the interface says so");
 
 impl Peer {
     fn new(tris: TriBuffer) -> Self {
@@ -108,14 +109,19 @@ fn build(variant: &CStr, vertices: &[[f32; 3]], indices: &[[u32; 3]], threads: c
 /// `peer` comes from [`peer_build`] and is not freed yet; `rays` points to `n` rays to be read and `hits` to `n` hits to be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn peer_closest(peer: *mut c_void, rays: *const PeerRay, n: usize, hits: *mut Hit) {
-    // SAFETY: the caller's promises. `Hit` is the 16 bytes of the interface's `PeerHit`, for any of which it is valid, so memory with
-    // anything in it may be seen as hits.
-    let (peer, rays, hits) = unsafe { (&*peer.cast::<Peer>(), slice(rays, n), slice_mut(hits, n)) };
-    SCRATCH.with_borrow_mut(|scratch| {
-        for (rays, hits) in rays.chunks(BATCH).zip(hits.chunks_mut(BATCH)) {
-            peer.tree.closest_hits(&scratch.batch(rays), ClassMask::ALL, hits);
-        }
-    });
+    // SAFETY: the caller's promises.
+    unsafe { closest(peer, rays, n, hits) }
+}
+
+/// The same for rays with f64 origins that name the triangles they leave.
+///
+/// # Safety
+///
+/// As [`peer_closest`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn peer_closest64(peer: *mut c_void, rays: *const PeerRay64, n: usize, hits: *mut Hit) {
+    // SAFETY: the caller's promises.
+    unsafe { closest(peer, rays, n, hits) }
 }
 
 /// Whether each of `n` rays hits anything: 1 or 0.
@@ -126,13 +132,46 @@ pub unsafe extern "C" fn peer_closest(peer: *mut c_void, rays: *const PeerRay, n
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn peer_any(peer: *mut c_void, rays: *const PeerRay, n: usize, occluded: *mut u8) {
     // SAFETY: the caller's promises.
+    unsafe { any(peer, rays, n, occluded) }
+}
+
+/// The same for rays with f64 origins that name the triangles they leave.
+///
+/// # Safety
+///
+/// As [`peer_any`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn peer_any64(peer: *mut c_void, rays: *const PeerRay64, n: usize, occluded: *mut u8) {
+    // SAFETY: the caller's promises.
+    unsafe { any(peer, rays, n, occluded) }
+}
+
+/// # Safety
+///
+/// As [`peer_closest`].
+unsafe fn closest<R: Given>(peer: *mut c_void, rays: *const R, n: usize, hits: *mut Hit) {
+    // SAFETY: the caller's promises. `Hit` is the 16 bytes of the interface's `PeerHit`, for any of which it is valid, so memory with
+    // anything in it may be seen as hits.
+    let (peer, rays, hits) = unsafe { (&*peer.cast::<Peer>(), slice(rays, n), slice_mut(hits, n)) };
+    SCRATCH.with_borrow_mut(|scratch| {
+        for (rays, hits) in rays.chunks(BATCH).zip(hits.chunks_mut(BATCH)) {
+            peer.tree.closest_hits(&R::batch(scratch, rays), ClassMask::ALL, hits);
+        }
+    });
+}
+
+/// # Safety
+///
+/// As [`peer_any`].
+unsafe fn any<R: Given>(peer: *mut c_void, rays: *const R, n: usize, occluded: *mut u8) {
+    // SAFETY: the caller's promises.
     let (peer, rays, bytes) = unsafe { (&*peer.cast::<Peer>(), slice(rays, n), slice_mut(occluded, n)) };
     bytes.fill(0);
     // SAFETY: the same memory, not used as `bytes` while `occluded` lives; a 0 is a `bool`, and a `bool` is a byte of 0 or 1.
     let occluded = unsafe { slice_mut(bytes.as_mut_ptr().cast::<bool>(), n) };
     SCRATCH.with_borrow_mut(|scratch| {
         for (rays, occluded) in rays.chunks(BATCH).zip(occluded.chunks_mut(BATCH)) {
-            peer.tree.any_hits(&scratch.batch(rays), ClassMask::ALL, occluded);
+            peer.tree.any_hits(&R::batch(scratch, rays), ClassMask::ALL, occluded);
         }
     });
 }

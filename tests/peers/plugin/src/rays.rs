@@ -1,7 +1,7 @@
 //! Rays as the bench has them, made into batches as the product has them.
 
 use gz_core::glam::DVec3;
-use gz_core::{GzCoord, PerRay, RayBatch};
+use gz_core::{GzCoord, NO_TRI, PerRay, RayBatch, TriId};
 
 /// A ray of a ray file: 32 bytes.
 #[repr(C)]
@@ -11,6 +11,35 @@ pub struct PeerRay {
     tmin: f32,
     direction: [f32; 3],
     tmax: f32,
+}
+
+/// A ray as the product has it: 48 bytes.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct PeerRay64 {
+    origin: [f64; 3],
+    tmin: f32,
+    direction: [f32; 3],
+    tmax: f32,
+    leaves: TriId,
+}
+
+/// Rays of either kind.
+pub trait Given: Copy {
+    /// The batch of `rays`, 1 to [`BATCH`].
+    fn batch<'s>(scratch: &'s mut Scratch, rays: &[Self]) -> RayBatch<'s>;
+}
+
+impl Given for PeerRay {
+    fn batch<'s>(scratch: &'s mut Scratch, rays: &[Self]) -> RayBatch<'s> {
+        scratch.batch(rays)
+    }
+}
+
+impl Given for PeerRay64 {
+    fn batch<'s>(scratch: &'s mut Scratch, rays: &[Self]) -> RayBatch<'s> {
+        scratch.batch64(rays)
+    }
 }
 
 impl PeerRay {
@@ -29,11 +58,18 @@ pub struct Scratch {
     directions: [GzCoord; BATCH],
     tmins: [f32; BATCH],
     tmaxs: [f32; BATCH],
+    leaves: [TriId; BATCH],
 }
 
 impl Default for Scratch {
     fn default() -> Self {
-        Self { origins: [DVec3::ZERO; BATCH], directions: [GzCoord::ZERO; BATCH], tmins: [0.0; BATCH], tmaxs: [0.0; BATCH] }
+        Self {
+            origins: [DVec3::ZERO; BATCH],
+            directions: [GzCoord::ZERO; BATCH],
+            tmins: [0.0; BATCH],
+            tmaxs: [0.0; BATCH],
+            leaves: [NO_TRI; BATCH],
+        }
     }
 }
 
@@ -49,7 +85,8 @@ impl Scratch {
                 *other |= bits ^ first;
             }
         }
-        let [origin, tmin, direction, tmax] = [&other[..3], &other[3..4], &other[4..7], &other[7..]].map(|bits| bits.iter().all(|&b| b == 0));
+        let [origin, tmin, direction, tmax] =
+            [&other[..3], &other[3..4], &other[4..7], &other[7..]].map(|bits| bits.iter().all(|&b| b == 0));
         if origin {
             self.origins[0] = DVec3::from_array(first.origin.map(f64::from));
         } else {
@@ -80,9 +117,48 @@ impl Scratch {
     }
 }
 
+impl Scratch {
+    /// The same for rays as the product has them. Their ends are told once where they are equal, and so is a direction; origins differ.
+    fn batch64(&mut self, rays: &[PeerRay64]) -> RayBatch<'_> {
+        let first = rays[0];
+        let bits = |ray: &PeerRay64| {
+            let [x, y, z] = ray.direction;
+            [ray.tmin, x, y, z, ray.tmax].map(f32::to_bits)
+        };
+        let mut other = [0; 5];
+        for ((ray, o), leaves) in rays.iter().zip(&mut self.origins).zip(&mut self.leaves) {
+            ahead(ray);
+            (*o, *leaves) = (DVec3::from_array(ray.origin), ray.leaves);
+            for ((other, bits), first) in other.iter_mut().zip(bits(ray)).zip(bits(&first)) {
+                *other |= bits ^ first;
+            }
+        }
+        let [tmin, direction, tmax] = [&other[..1], &other[1..4], &other[4..]].map(|bits| bits.iter().all(|&b| b == 0));
+        if !direction {
+            for (ray, d) in rays.iter().zip(&mut self.directions) {
+                *d = GzCoord::from_array(ray.direction);
+            }
+        }
+        if !tmin || !tmax {
+            for (ray, (t0, t1)) in rays.iter().zip(self.tmins.iter_mut().zip(&mut self.tmaxs)) {
+                (*t0, *t1) = (ray.tmin, ray.tmax);
+            }
+        }
+        let n = rays.len();
+        let batch = RayBatch::new(
+            n,
+            PerRay::Each(&self.origins[..n]),
+            if direction { PerRay::One(GzCoord::from_array(first.direction)) } else { PerRay::Each(&self.directions[..n]) },
+            if tmin { PerRay::One(first.tmin) } else { PerRay::Each(&self.tmins[..n]) },
+            if tmax { PerRay::One(first.tmax) } else { PerRay::Each(&self.tmaxs[..n]) },
+        );
+        batch.leaving(&self.leaves[..n])
+    }
+}
+
 /// Asks for the memory of the ray that is a batch behind `ray`, as it comes from far away: a caller's array, not the product's own.
 #[inline(always)]
-fn ahead(ray: &PeerRay) {
+fn ahead<R>(ray: &R) {
     let next = std::ptr::from_ref(ray).wrapping_add(BATCH).cast::<i8>();
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a prefetch reads nothing and may be given any address. SSE is part of x86-64.

@@ -2,8 +2,8 @@
 
 use super::meshes::Mesh;
 use super::options::Options;
-use super::record::Record;
-use super::workshop::Workshop;
+use super::workshop::{Workshop, settings};
+use crate::bench::record::Record;
 use crate::bench::table::lines;
 use crate::bench::timing::{Ratio, machine, median};
 use crate::row;
@@ -83,7 +83,7 @@ pub(super) fn run(workshop: &Workshop, options: &Options, meshes: &[Mesh]) -> Re
         "B/tri: as each counts its own, Embree with its copy of vertices and indices; RSS: growth of resident memory by the build"
     );
     if options.write {
-        Record::new("peers-build", options.rounds)?
+        Record::new("peers-build", options.rounds, &settings())?
             .write("mesh,triangles,threads,competitor,seconds,bytes,RSS growth,peak growth", records)?;
     }
     Ok(())

@@ -1,11 +1,13 @@
 //! Meshes and rays of the race, as files.
 
-use super::workshop::{Workshop, answers, peers, run};
+use super::frame_rays;
+use super::workshop::{Workshop, peers};
+use crate::bench::indexed::Indexed;
 use crate::bench::scenes::scene_of;
+use crate::bench::tools::{answers, run};
 use gz_app::error::AppError;
 use gz_app::new_file::NewFile;
 use gz_core::{GzCoord, TriBuffer};
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -55,14 +57,22 @@ pub(super) fn mesh(workshop: &Workshop, name: &str) -> Result<Mesh, AppError> {
 ///
 /// If it cannot be made.
 pub(super) fn rays(workshop: &Workshop, mesh: &Mesh, set: &str) -> Result<PathBuf, AppError> {
-    let path = workshop.file("rays", &format!("{}.{set}.rays", mesh.name));
-    if !path.exists() {
-        println!("making the rays of {}", mesh.name);
-        let guide = format!("{}:default", workshop.ours.display());
-        let mut command = Command::new(&workshop.race);
-        command.arg("rays").arg(&mesh.path).arg(workshop.file("rays", &mesh.name)).arg(guide);
-        run(&mut command, "making rays")?;
+    // Those of a picture have f64 origins.
+    let of_frame = frame_rays::SETS.contains(&set);
+    let file = |set: &str| workshop.file("rays", &format!("{}.{set}.rays{}", mesh.name, if of_frame { "64" } else { "" }));
+    let path = file(set);
+    if path.exists() {
+        return Ok(path);
     }
+    println!("making the rays of {}", mesh.name);
+    if of_frame {
+        frame_rays::make(mesh, frame_rays::SIDE, file)?;
+        return Ok(path);
+    }
+    let guide = format!("{}:default", workshop.ours.display());
+    let mut command = Command::new(&workshop.race);
+    command.arg("rays").arg(&mesh.path).arg(workshop.file("rays", &mesh.name)).arg(guide);
+    run(&mut command, "making rays")?;
     Ok(path)
 }
 
@@ -92,16 +102,8 @@ fn write_mesh(path: &Path, tris: &TriBuffer) -> Result<(), AppError> {
     NewFile::at(path)?.write(&mesh_bytes(tris))
 }
 
-fn mesh_bytes(tris: &TriBuffer) -> Vec<u8> {
-    let (mut vertices, mut numbers) = (Vec::new(), HashMap::new());
-    let mut indices = Vec::with_capacity(3 * tris.len() + 6);
-    for corner in tris.positions().iter().flatten() {
-        let number = *numbers.entry(corner.to_array().map(f32::to_bits)).or_insert_with(|| {
-            vertices.push(*corner);
-            vertices.len() as u32 - 1
-        });
-        indices.push(number);
-    }
+pub(super) fn mesh_bytes(tris: &TriBuffer) -> Vec<u8> {
+    let Indexed { mut vertices, mut triangles } = Indexed::of(tris.positions());
     // The ground: level with the lowest point, its middle below the mesh's, each side four times the mesh's diagonal.
     let bounds = tris.bounds();
     let (middle, reach) = (bounds.centre(), 2.0 * bounds.size().length());
@@ -109,13 +111,13 @@ fn mesh_bytes(tris: &TriBuffer) -> Vec<u8> {
     for (x, z) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         vertices.push(GzCoord::new(middle.x + x * reach, bounds.min.y, middle.z + z * reach));
     }
-    indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
+    triangles.extend([[0, 1, 2], [0, 2, 3]].map(|corners| corners.map(|k| first + k)));
 
-    let counts = [vertices.len() as u32, indices.len() as u32 / 3];
+    let counts = [vertices.len() as u32, triangles.len() as u32];
     let mut bytes = b"TRIM".to_vec();
     bytes.extend(counts.iter().flat_map(|n| n.to_le_bytes()));
     bytes.extend(vertices.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
-    bytes.extend(indices.iter().flat_map(|k| k.to_le_bytes()));
+    bytes.extend(triangles.iter().flatten().flat_map(|k| k.to_le_bytes()));
     bytes
 }
 

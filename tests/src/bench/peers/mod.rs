@@ -4,14 +4,16 @@
 //! take turns. Here is what comes before, the workshop with its meshes, and what comes after, the tables.
 
 mod builds;
+mod frame_rays;
 mod meshes;
 mod options;
-mod record;
+mod scaling;
 mod traces;
 mod workshop;
 
 use gz_app::error::AppError;
 use meshes::Mesh;
+pub(super) use options::workshop_folder;
 use options::{MESHES, Options};
 use workshop::Workshop;
 

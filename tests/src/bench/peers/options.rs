@@ -3,16 +3,21 @@
 use gz_app::error::AppError;
 use std::path::PathBuf;
 
-/// The sets of rays that a mesh has, as `harness/make_rays.hpp` makes them.
-pub(super) const SETS: [&str; 5] = ["primscan", "primtile", "shadow", "reflect", "random"];
+/// The sets of rays that a mesh has: five as `harness/make_rays.hpp` makes them, and the product's own.
+pub(super) const SETS: [&str; 7] = ["primscan", "primtile", "shadow", "reflect", "random", "frame-shadow", "frame-reflect"];
 /// Those that are raced unless the options say otherwise: all but the one that has the primary rays in another order.
-const RACED: [&str; 4] = ["primtile", "shadow", "reflect", "random"];
+const RACED: [&str; 6] = ["primtile", "shadow", "reflect", "random", "frame-shadow", "frame-reflect"];
 /// The meshes, unless the options say otherwise.
 pub(super) const MESHES: [&str; 4] = ["teapot1k", "teapot16k", "teapot260k", "dragon871k"];
 /// Rounds, unless the options say otherwise.
 const ROUNDS: usize = 7;
 /// More threads than this are not asked for.
 const MAX_THREADS: usize = 256;
+
+/// Where everything from outside is kept unless the options say otherwise.
+pub(in crate::bench) fn workshop_folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/peers")
+}
 
 /// What the bench was asked to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,8 +38,8 @@ pub(super) struct Options {
     pub(super) write: bool,
 }
 
-const USAGE: &str = "bench peers [--mesh NAME|SCENE|FILE] [--set primscan|primtile|shadow|reflect|random] [--threads N] [--rounds N] \
-                     [--build] [--dir DIR] [--write]";
+const USAGE: &str = "bench peers [--mesh NAME|SCENE|FILE] [--set primscan|primtile|shadow|reflect|random|frame-shadow|frame-reflect] \
+                     [--threads N] [--rounds N] [--build] [--dir DIR] [--write]";
 
 impl Options {
     /// Reads the words. `--mesh`, `--set` and `--threads` may be repeated.
@@ -44,7 +49,7 @@ impl Options {
     /// [`AppError::Usage`] for a word that means nothing.
     pub(super) fn parse(words: &[String]) -> Result<Self, AppError> {
         let usage = |what: String| AppError::Usage(format!("{what}: use {USAGE}"));
-        let dir = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/peers");
+        let dir = workshop_folder();
         let (meshes, sets, threads) = (Vec::new(), Vec::new(), Vec::new());
         let mut options = Self { dir, meshes, sets, threads, rounds: ROUNDS, build: false, write: false };
         let mut words = words.iter();
@@ -95,7 +100,7 @@ mod tests {
         assert_eq!((&options.meshes[..], &options.sets[..]), (&["teapot:7".to_owned()][..], &["random".to_owned()][..]));
         assert_eq!(options.dir, PathBuf::from("x"));
         let plain = parse("").unwrap();
-        assert_eq!((plain.sets.len(), plain.meshes.len(), plain.threads.len()), (4, 0, 0));
+        assert_eq!((plain.sets.len(), plain.meshes.len(), plain.threads.len()), (6, 0, 0));
         assert!(plain.dir.ends_with("target/peers"));
     }
 

@@ -4,12 +4,16 @@
 //! numpy), `npm` (what is downloaded for meshes), `cargo` (our own library). What is there is not made again; the race itself and our
 //! library are, when their sources are newer.
 
+use crate::bench::record::first_line;
+use crate::bench::tools::{Venv, answers, run};
 use gz_app::error::AppError;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Python packages: Embree's shared library comes with the first.
 const PACKAGES: [&str; 2] = ["embreex==4.4.0.post1", "numpy"];
+/// The folder among the installed packages that has it.
+const LIBRARIES: &str = "embreex.libs";
 
 /// Competitors and the program that races them, ready to run.
 #[derive(Debug)]
@@ -130,29 +134,16 @@ impl Workshop {
     ///
     /// If it cannot be made.
     pub(super) fn python(&self) -> Result<PathBuf, AppError> {
-        let venv = self.dir.join("venv");
-        let python = venv.join("bin/python");
-        if !python.exists() {
-            run(Command::new("python3").args(["-m", "venv"]).arg(&venv), "python3 -m venv")?;
-        }
-        if self.wheel().is_none() {
-            println!("fetching {}", PACKAGES.join(", "));
-            run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(PACKAGES), "pip install")?;
-        }
-        Ok(python)
-    }
-
-    fn embree_library(&self) -> Result<PathBuf, AppError> {
-        self.python()?;
-        self.wheel().ok_or_else(|| AppError::Io(format!("{} brought no libembree4", PACKAGES[0])))
+        Venv::of(&self.dir).with(&PACKAGES, LIBRARIES)
     }
 
     /// Embree's shared library, where the wheel has put it.
-    fn wheel(&self) -> Option<PathBuf> {
-        let listed = |folder: &Path| std::fs::read_dir(folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
-        let libraries = listed(&self.dir.join("venv/lib")).flat_map(|python| listed(&python.join("site-packages/embreex.libs")));
+    fn embree_library(&self) -> Result<PathBuf, AppError> {
+        self.python()?;
+        let libraries = Venv::of(&self.dir).package(LIBRARIES).and_then(|folder| std::fs::read_dir(folder).ok());
+        let mut libraries = libraries.into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
         let is_embree = |path: &PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("libembree4"));
-        libraries.into_iter().find(is_embree)
+        libraries.find(is_embree).ok_or_else(|| AppError::Io(format!("{} brought no libembree4", PACKAGES[0])))
     }
 }
 
@@ -161,31 +152,18 @@ pub(super) fn peers(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("peers").join(name)
 }
 
-/// Whether a program can be started.
-pub(super) fn answers(program: &str) -> bool {
-    Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success())
-}
-
 /// The C++ compiler.
 pub(super) fn compiler() -> Option<String> {
     let named = std::env::var("CXX").ok();
     named.into_iter().chain(["c++", "g++", "clang++"].map(str::to_owned)).find(|program| answers(program))
 }
 
-/// Runs a program to its end; what it prints is kept back.
-///
-/// # Errors
-///
-/// [`AppError::Io`] with the last line of what it said when it fails or cannot be started.
-pub(super) fn run(command: &mut Command, what: &str) -> Result<(), AppError> {
-    let output = command.output().map_err(|error| AppError::Io(format!("{what} cannot be started: {error}")))?;
-    if output.status.success() {
-        return Ok(());
-    }
-    let text = String::from_utf8_lossy(&output.stderr);
-    // Compilers say the cause first and end with a summary.
-    let cause = text.lines().find(|line| line.contains("error")).or(text.lines().rfind(|line| !line.trim().is_empty()));
-    Err(AppError::Io(format!("{what} failed: {}", cause.unwrap_or("it does not say why").trim())))
+/// What the competitors are, for a record.
+pub(super) fn settings() -> [String; 2] {
+    [
+        format!("C++: {}, -O3 -march=native", compiler().map_or_else(String::new, |cxx| first_line(&cxx, &["--version"]))),
+        "gz: no target-cpu; obvhs 0.4.0 and parry3d 0.31.1: target-cpu=native; Embree of embreex 4.4.0".to_owned(),
+    ]
 }
 
 /// The compiler's command for `product`, which [`finish`] puts in its place.
