@@ -12,7 +12,8 @@ fn the_two_buffers_of_a_view_agree_but_for_edges() {
     assert!(it.both > 160 * 160 / 2, "{it:?}");
     // Edges of triangles that are several pixels long; a floor of 8 by 8 quads and a teapot of 16 segments.
     assert!(it.only_z + it.only_t < it.both / 200 && it.other < it.both / 20, "{it:?}");
-    assert!(it.depths_t > it.both / 2 && it.depths_z > it.both / 4, "{it:?}");
+    // Screen z in f32 tells a part of the depths apart that T-values do.
+    assert!(it.depths_t > it.both / 2 && it.depths_z > 1000 && it.depths_z < it.depths_t / 2, "{it:?}");
     for shot in [view.z_shot(), view.t_shot(), view.difference_shot()] {
         assert_eq!((shot.width, shot.height, shot.rgb.len()), (160, 160, 3 * 160 * 160));
         assert!(shot.rgb.iter().any(|&byte| byte != shot.rgb[0]), "{}", shot.caption);
