@@ -4,7 +4,7 @@ use super::page::{Content, Filled, page, without_pictures};
 use super::picture::Picture;
 use super::run::{Mode, Run};
 use super::section::Section;
-use super::store::{Store, csv_lines};
+use super::store::{Origin, Store, csv_lines};
 use super::{findings, markers, sections};
 use gz_app::error::AppError;
 use std::path::Path;
@@ -40,7 +40,7 @@ pub fn check_sections(store: &Store, sections: &[Section]) -> Result<(), AppErro
     let list_path = store.folder.join("pictures.csv");
     let list = read(&list_path)?;
     let mut filled = Vec::new();
-    let mut found_origin = None;
+    let mut origins = Vec::new();
     let mut mode = None;
     for section in sections {
         let (origin, table) = store.table(section.id, section.columns)?;
@@ -59,10 +59,10 @@ pub fn check_sections(store: &Store, sections: &[Section]) -> Result<(), AppErro
             return Err(stale(format!("{}: other rows", store.csv(section.id).display())));
         }
         mode.get_or_insert(of_rows);
-        found_origin.get_or_insert(origin);
+        origins.push(origin);
         filled.push(Filled { section: *section, table, pictures: pictures(&list, section.id) });
     }
-    let (Some(origin), Some(mode)) = (found_origin, mode) else { return Ok(()) };
+    let (Some(origin), Some(mode)) = (Origin::of_all(&origins), mode) else { return Ok(()) };
     let findings = findings::all(&filled);
     let content = Content { origin, mode: mode.name().to_owned(), sections: filled, findings };
     if picture_list(&content) != list {

@@ -29,7 +29,7 @@ use page::{Content, Filled};
 use run::{Mode, Run};
 use section::Section;
 use std::path::{Path, PathBuf};
-use store::Store;
+use store::{Origin, Store};
 
 /// Does what `words` ask for.
 ///
@@ -112,16 +112,16 @@ pub fn make(store: &Store, run: &Run, options: &Options, sections: &[Section]) -
 /// What the page is made from, read from its files.
 fn content(store: &Store, sections: &[Section], mode: Mode) -> Result<Content, AppError> {
     let mut filled = Vec::new();
-    let mut origin = None;
+    let mut origins = Vec::new();
     for section in sections {
         let (of, table) = store.table(section.id, section.columns)?;
         let pictures = store.pictures_of(section.id).ok_or_else(|| {
             AppError::Io(format!("pictures of {} are missing: measure it again with --fresh --only {0}", section.id))
         })?;
-        origin.get_or_insert(of);
+        origins.push(of);
         filled.push(Filled { section: *section, table, pictures });
     }
-    let origin = origin.ok_or_else(|| AppError::Usage("a report of no section".to_owned()))?;
+    let origin = Origin::of_all(&origins).ok_or_else(|| AppError::Usage("a report of no section".to_owned()))?;
     let findings = findings::all(&filled);
     Ok(Content { origin, mode: mode.name().to_owned(), sections: filled, findings })
 }

@@ -37,6 +37,24 @@ impl Origin {
     pub fn of(run: &Run) -> Self {
         Self { seed: run.seed.to_string(), revision: run.revision.clone(), cpu: run.cpu.clone() }
     }
+
+    /// All that several files say, each thing once: a run that was stopped and taken up again may have more than one revision.
+    pub fn of_all(origins: &[Self]) -> Option<Self> {
+        let each = |part: fn(&Self) -> &str| {
+            let mut said: Vec<&str> = Vec::new();
+            for origin in origins {
+                if !said.contains(&part(origin)) {
+                    said.push(part(origin));
+                }
+            }
+            said.join(" and ")
+        };
+        (!origins.is_empty()).then(|| Self {
+            seed: each(|it| &it.seed),
+            revision: each(|it| &it.revision),
+            cpu: each(|it| &it.cpu),
+        })
+    }
 }
 
 impl Store {
