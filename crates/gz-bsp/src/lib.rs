@@ -26,6 +26,8 @@ mod steps;
 mod visit;
 mod walk;
 
+#[cfg(feature = "plain-f32")]
+pub use cost::PlainF32Tree;
 pub use cost::{BspTree, CostModel, CostStats};
 pub use expect::Expected;
 pub use midpoint::{MidpointTree, Node};

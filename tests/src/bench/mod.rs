@@ -6,6 +6,7 @@
 pub mod agree;
 pub mod brute;
 pub mod counted;
+pub mod exactness;
 pub mod frames;
 pub mod front;
 pub mod grid;
@@ -53,5 +54,6 @@ pub fn run(words: &[String]) -> Result<(), AppError> {
         Bench::Memory => memory::run(&options),
         Bench::Agree => agree::run(&options),
         Bench::Micro => micro::run(&options),
+        Bench::Exactness => exactness::run(&options),
     })
 }

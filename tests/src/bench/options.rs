@@ -21,6 +21,8 @@ pub enum Bench {
     Agree,
     /// Kernels and steps of the walk.
     Micro,
+    /// The tree against the same walk in plain f32.
+    Exactness,
 }
 
 /// What a bench was asked to do.
@@ -38,11 +40,11 @@ pub struct Options {
     pub rays: Option<usize>,
     /// At most this many triangles (`scale`); `None` for the bench's own limit.
     pub limit: Option<usize>,
-    /// Whether the figures go to `docs/bench` too (`micro`).
+    /// Whether the figures go to `docs/bench` too (`micro`, `exactness`).
     pub write: bool,
 }
 
-const USAGE: &str = "bench paper|grid|brute|scale|front|memory|agree|micro [--scene NAME|FILE|teapot:SEGMENTS|uneven] [--threads N] [--rounds N] [--rays N] [--limit TRIANGLES], micro [--write], or bench frames or peers";
+const USAGE: &str = "bench paper|grid|brute|scale|front|memory|agree|micro|exactness [--scene NAME|FILE|teapot:SEGMENTS|uneven] [--threads N] [--rounds N] [--rays N] [--limit TRIANGLES], micro and exactness [--write], or bench frames or peers";
 
 impl Options {
     /// Reads the words.
@@ -62,12 +64,13 @@ impl Options {
             Some("memory") => Bench::Memory,
             Some("agree") => Bench::Agree,
             Some("micro") => Bench::Micro,
+            Some("exactness") => Bench::Exactness,
             Some(other) => return Err(usage(format!("there is no bench {other}"))),
             None => return Err(usage("no bench is named".to_owned())),
         };
         let mut options = Self { bench, scenes: Vec::new(), threads: 1, rounds: None, rays: None, limit: None, write: false };
         while let Some(option) = words.next() {
-            if option == "--write" && bench == Bench::Micro {
+            if option == "--write" && matches!(bench, Bench::Micro | Bench::Exactness) {
                 options.write = true;
                 continue;
             }
@@ -102,7 +105,7 @@ mod tests {
         assert_eq!((options.bench, options.threads, options.rounds), (Bench::Grid, 2, Some(7)));
         assert_eq!(options.scenes, ["uneven", "teapot:16"]);
         assert_eq!(parse("paper").unwrap().threads, 1);
-        assert!(parse("micro --write --rounds 3").unwrap().write);
+        assert!(parse("micro --write --rounds 3").unwrap().write && parse("exactness --write").unwrap().write);
     }
 
     #[test]

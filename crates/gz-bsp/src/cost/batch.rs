@@ -110,12 +110,12 @@ impl Drop for Loan {
     }
 }
 
-struct ClosestTask<'t, V> {
-    tree: &'t BspTree<'t>,
-    rays: &'t RayBatch<'t>,
-    targets: Targets<'t>,
-    hits: &'t mut [Hit],
-    visits: &'t mut V,
+pub(super) struct ClosestTask<'t, V> {
+    pub(super) tree: &'t BspTree<'t>,
+    pub(super) rays: &'t RayBatch<'t>,
+    pub(super) targets: Targets<'t>,
+    pub(super) hits: &'t mut [Hit],
+    pub(super) visits: &'t mut V,
 }
 
 impl<V: Visits> Task for ClosestTask<'_, V> {
@@ -158,12 +158,12 @@ impl<V: Visits> Task for ClosestTask<'_, V> {
     }
 }
 
-struct AnyTask<'t, V> {
-    tree: &'t BspTree<'t>,
-    rays: &'t RayBatch<'t>,
-    targets: Targets<'t>,
-    occluded: &'t mut [bool],
-    visits: &'t mut V,
+pub(super) struct AnyTask<'t, V> {
+    pub(super) tree: &'t BspTree<'t>,
+    pub(super) rays: &'t RayBatch<'t>,
+    pub(super) targets: Targets<'t>,
+    pub(super) occluded: &'t mut [bool],
+    pub(super) visits: &'t mut V,
 }
 
 impl<V: Visits> Task for AnyTask<'_, V> {

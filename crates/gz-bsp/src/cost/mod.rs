@@ -8,6 +8,8 @@ mod batch;
 mod build;
 mod check;
 mod clip;
+#[cfg(feature = "plain-f32")]
+mod plain_f32;
 mod slabs;
 mod split;
 mod stats;
@@ -17,6 +19,8 @@ mod together;
 mod walk;
 mod wide;
 
+#[cfg(feature = "plain-f32")]
+pub use plain_f32::PlainF32Tree;
 pub use split::CostModel;
 pub use stats::CostStats;
 pub use wide::BspTree;

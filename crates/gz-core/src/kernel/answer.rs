@@ -5,6 +5,7 @@
 //! the same steps for one hit and for eight, so that the bits are the same.
 
 use super::exact::ExactHit;
+use super::rung::Rung;
 use super::solution::{Bounded, Solution};
 use crate::simd::{Doubles, EightDoubles, Lanes, Simd, nine, numbers_of};
 use crate::{GzCoord, GzRay, Hit, TriId};
@@ -41,23 +42,36 @@ fn cut<F: Doubles>(weight: F) -> F {
 
 /// T, u and v of a hit, for a ray and a triangle that are known to meet.
 pub(crate) fn t_u_v(ray: &GzRay, corners: &[GzCoord; 3]) -> (f32, f32, f32) {
-    let quick = InDoubles::of(&Solution::quick_of_one(ray, corners));
-    let [lo, hi] = quick.t.map(|t| t as f32);
-    if quick.certainty > 0.0 && lo.to_bits() == hi.to_bits() && quick.weights >= 0.0 {
-        return (lo, quick.v as f32, quick.w as f32);
-    }
-    let found = InDoubles::of(&Solution::of_one(ray, corners));
-    let certain = found.certainty > 0.0;
-    let [lo, hi] = found.t.map(|t| t as f32);
-    // Equal bits, so that -0 and 0 are told apart.
-    let t = (certain && lo.to_bits() == hi.to_bits()).then_some(lo);
-    let weights = (certain && found.weights >= 0.0).then_some((found.v as f32, found.w as f32));
+    let (t, weights) = in_doubles(ray, corners);
     if let (Some(t), Some((u, v))) = (t, weights) {
         return (t, u, v);
     }
     let Some(exact) = ExactHit::of(ray, corners) else { return (t.unwrap_or(0.0), 0.0, 0.0) };
     let (u, v) = weights.unwrap_or_else(|| (exact.weight(1), exact.weight(2)));
     (t.unwrap_or_else(|| exact.t()), u, v)
+}
+
+/// What T, u and v of a hit were formed with: f64, or whole numbers where it leaves their rounding open.
+pub fn answer_rung(ray: &GzRay, corners: &[GzCoord; 3]) -> Rung {
+    match in_doubles(ray, corners) {
+        (Some(_), Some(_)) => Rung::F64,
+        _ => Rung::Exact,
+    }
+}
+
+/// T, and u and v, as far as f64 settles them.
+fn in_doubles(ray: &GzRay, corners: &[GzCoord; 3]) -> (Option<f32>, Option<(f32, f32)>) {
+    let quick = InDoubles::of(&Solution::quick_of_one(ray, corners));
+    let [lo, hi] = quick.t.map(|t| t as f32);
+    if quick.certainty > 0.0 && lo.to_bits() == hi.to_bits() && quick.weights >= 0.0 {
+        return (Some(lo), Some((quick.v as f32, quick.w as f32)));
+    }
+    let found = InDoubles::of(&Solution::of_one(ray, corners));
+    let certain = found.certainty > 0.0;
+    let [lo, hi] = found.t.map(|t| t as f32);
+    // Equal bits, so that -0 and 0 are told apart.
+    let t = (certain && lo.to_bits() == hi.to_bits()).then_some(lo);
+    (t, (certain && found.weights >= 0.0).then_some((found.v as f32, found.w as f32)))
 }
 
 /// Eight rays and the triangles that they hit.
@@ -71,35 +85,47 @@ impl<S: Simd> EightPairs<'_, S> {
     /// [`t_u_v`] of each lane whose bit is set, as the hit of triangle `ids[lane]`; of others a miss. `ray` gives a lane's ray.
     #[inline(always)]
     pub(super) fn hits(&self, hit: u32, ids: &[TriId; 8], ray: impl Fn(usize) -> GzRay, hits: &mut [Hit]) {
-        let c = &self.corners;
-        let numbers = [nine(c[0]), nine(c[1]), nine(c[2]), nine(c[3]), nine(c[4]), nine(c[5]), nine(c[6]), nine(c[7])];
-        let [ax, ay, az, bx, by, bz, cx, cy, cz] = S::corners(&numbers);
-        let corners = [widen3::<S>([ax, ay, az]), widen3::<S>([bx, by, bz]), widen3::<S>([cx, cy, cz])];
+        let [a, b, c] = corners_of::<S>(&self.corners);
+        let corners = [widen3::<S>(a), widen3::<S>(b), widen3::<S>(c)];
         let found = InDoubles::of(&Solution::quick(self.origin, self.direction, &corners));
         let [lo, hi] = [found.t[0], found.t[1]];
         let (lo, hi, v, w) = (S::narrow(lo), S::narrow(hi), S::narrow(found.v), S::narrow(found.w));
         let zero = <S::Doubles>::splat(0.0);
         let settled = lo.same_bits(hi) & !found.certainty.at_most(zero) & zero.at_most(found.weights);
-        let nothing = <S::Eight>::splat(0.0);
-        let rows = [
-            lo.select(hit, <S::Eight>::splat(Hit::MISS.t)),
-            <S::Eight>::load(numbers_of(ids)).select(hit, <S::Eight>::splat(f32::from_bits(Hit::MISS.tri))),
-            v.select(hit, nothing),
-            w.select(hit, nothing),
-        ];
-        match hits.first_chunk_mut() {
-            Some(hits) => S::write_hits(rows, hits),
-            None => {
-                let mut eight = [Hit::MISS; 8];
-                S::write_hits(rows, &mut eight);
-                hits.copy_from_slice(&eight[..hits.len()]);
-            }
-        }
+        write_hits::<S>(hit, ids, [lo, v, w], hits);
         let mut open = hit & !settled;
         while open != 0 {
             let lane = open.trailing_zeros() as usize;
             open &= open - 1;
             hits[lane] = alone(&ray(lane), ids[lane], self.corners[lane]);
+        }
+    }
+}
+
+/// The corners of eight triangles, coordinate by coordinate.
+#[inline(always)]
+pub(super) fn corners_of<S: Simd>(c: &[&[GzCoord; 3]; 8]) -> [[S::Eight; 3]; 3] {
+    let numbers = [nine(c[0]), nine(c[1]), nine(c[2]), nine(c[3]), nine(c[4]), nine(c[5]), nine(c[6]), nine(c[7])];
+    let [ax, ay, az, bx, by, bz, cx, cy, cz] = S::corners(&numbers);
+    [[ax, ay, az], [bx, by, bz], [cx, cy, cz]]
+}
+
+/// Writes t, u and v as hits of `ids` where the bit is set, elsewhere misses; to eight hits or fewer.
+#[inline(always)]
+pub(super) fn write_hits<S: Simd>(hit: u32, ids: &[TriId; 8], [t, u, v]: [S::Eight; 3], hits: &mut [Hit]) {
+    let nothing = <S::Eight>::splat(0.0);
+    let rows = [
+        t.select(hit, <S::Eight>::splat(Hit::MISS.t)),
+        <S::Eight>::load(numbers_of(ids)).select(hit, <S::Eight>::splat(f32::from_bits(Hit::MISS.tri))),
+        u.select(hit, nothing),
+        v.select(hit, nothing),
+    ];
+    match hits.first_chunk_mut() {
+        Some(hits) => S::write_hits(rows, hits),
+        None => {
+            let mut eight = [Hit::MISS; 8];
+            S::write_hits(rows, &mut eight);
+            hits.copy_from_slice(&eight[..hits.len()]);
         }
     }
 }

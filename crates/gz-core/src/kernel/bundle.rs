@@ -6,6 +6,7 @@ use super::answer::EightPairs;
 use super::filter::{FilterRay, GREATEST_DIRECTION, GREATEST_REACH, Margin};
 use super::group::cross;
 use super::nearest::Nearest;
+use super::plain_f32::plain_hits;
 use super::space::FilterSpace;
 use crate::simd::{Doubles, EightDoubles, Lanes, Simd, arrays3, coordinates, coordinates_f64};
 use crate::{GzCoord, Hit, NO_TRI, PerRay, RayBatch, TriId};
@@ -172,7 +173,9 @@ impl RayBundle {
                         None => <S::Doubles>::unzip3(&padded(eight)),
                     };
                     for axis in 0..3 {
-                        *eight_mut(&mut self.exact_origin[axis][p], half) = points[axis].array();
+                        if S::CERTIFIED {
+                            *eight_mut(&mut self.exact_origin[axis][p], half) = points[axis].array();
+                        }
                         let stretched = points[axis].times(<S::Doubles>::splat(f64::from(self.scale[axis])));
                         stretched.narrow(eight_mut(&mut self.origin[axis][p], half));
                     }
@@ -242,6 +245,11 @@ impl RayBundle {
             for axis in 0..3 {
                 let (centre, scale) = (f64::from(self.centre[axis]), f64::from(self.scale[axis]));
                 for half in 0..2 {
+                    if !S::CERTIFIED {
+                        let o = <S::Eight>::load(eight(&self.origin[axis][p], half));
+                        o.minus(<S::Eight>::splat(self.centre[axis])).store(eight_mut(&mut self.shift[axis][p], half));
+                        continue;
+                    }
                     let o = <S::Doubles>::load(eight(&self.exact_origin[axis][p], half));
                     let shift = o.times(<S::Doubles>::splat(scale)).minus(<S::Doubles>::splat(centre));
                     shift.narrow(eight_mut(&mut self.shift[axis][p], half));
@@ -307,6 +315,17 @@ impl RayBundle {
             }
             let tris = eight(&self.tris[p], half);
             let any = tris[found.trailing_zeros() as usize];
+            let corners = std::array::from_fn(|lane| {
+                let tri = if found >> lane & 1 != 0 { tris[lane] } else { any };
+                &positions[tri as usize]
+            });
+            if !S::CERTIFIED {
+                let [o, d] = [&self.origin, &self.direction];
+                let origin = [eight(&o[0][p], half), eight(&o[1][p], half), eight(&o[2][p], half)];
+                let direction = [eight(&d[0][p], half), eight(&d[1][p], half), eight(&d[2][p], half)];
+                plain_hits::<S>(origin, direction, self.scale, &corners, found, tris, hits);
+                continue;
+            }
             let mut origin = [<S::Doubles>::splat(0.0); 3];
             let mut direction = origin;
             for axis in 0..3 {
@@ -314,10 +333,6 @@ impl RayBundle {
                 let d = <S::Doubles>::widen(eight(&self.direction[axis][p], half));
                 direction[axis] = d.times(<S::Doubles>::splat(1.0 / f64::from(self.scale[axis])));
             }
-            let corners = std::array::from_fn(|lane| {
-                let tri = if found >> lane & 1 != 0 { tris[lane] } else { any };
-                &positions[tri as usize]
-            });
             let pairs = EightPairs::<S> { origin, direction, corners };
             pairs.hits(found, tris, |lane| rays.ray(self.place(p, 8 * half + lane)), hits);
         }

@@ -118,30 +118,37 @@ impl Dyadic {
     }
 
     pub(crate) fn plus(&self, other: &Self) -> Self {
+        self.sum(other, other.negative)
+    }
+
+    pub(crate) fn minus(&self, other: &Self) -> Self {
+        self.sum(other, !other.negative)
+    }
+
+    /// The sum with what has the magnitude of `other` and this sign.
+    fn sum(&self, other: &Self, negative: bool) -> Self {
         if self.len == 0 {
-            return other.clone();
+            return Self { negative, ..other.clone() };
         }
         if other.len == 0 {
             return self.clone();
         }
         // The number with the higher exponent is shifted left, with room for a carry, and the other is added or taken away in place.
-        let (high, low) = if self.exponent >= other.exponent { (self, other) } else { (other, self) };
-        let mut sum = high.shifted_to(low.exponent, low.len);
-        let room = sum.limbs.all().len();
-        let out = sum.limbs.all_mut();
-        if high.negative == low.negative {
+        let swapped = self.exponent < other.exponent;
+        let (high, low) = if swapped { (other, self) } else { (self, other) };
+        let (mut sum, room) = high.shifted_to(low.exponent, low.len);
+        let out = &mut sum.limbs.all_mut()[..room];
+        let (sign, other_sign) = if swapped { (negative, self.negative) } else { (self.negative, negative) };
+        sum.negative = sign;
+        if sign == other_sign {
             add(out, low.limbs());
         } else if take_away(out, low.limbs()) {
             // What was taken away was the larger: the difference came out as its complement.
             negate(out);
-            sum.negative = low.negative;
+            sum.negative = other_sign;
         }
         sum.len = used(out, room);
         if sum.len == 0 { Self::ZERO } else { sum }
-    }
-
-    pub(crate) fn minus(&self, other: &Self) -> Self {
-        self.plus(&other.clone().negated())
     }
 
     /// The order of two numbers.
@@ -149,8 +156,8 @@ impl Dyadic {
         self.minus(other).sign().cmp(&0)
     }
 
-    /// The same number with a lower `exponent`, and room for at least `other` limbs and a carry.
-    fn shifted_to(&self, exponent: i32, other: usize) -> Self {
+    /// The same number with a lower `exponent`, and room for at least `other` limbs and a carry: so many limbs are to be worked on.
+    fn shifted_to(&self, exponent: i32, other: usize) -> (Self, usize) {
         let by = (self.exponent - exponent) as usize;
         let (whole, bits) = (by / 64, by % 64);
         let room = (self.len + whole + 1).max(other) + 1;
@@ -162,8 +169,7 @@ impl Dyadic {
                 out[i + whole + 1] = x >> (64 - bits);
             }
         }
-        let len = used(out, room);
-        Self { negative: self.negative, exponent, len, limbs }
+        (Self { negative: self.negative, exponent, len: room, limbs }, room)
     }
 
     /// The uppermost 64 bits as an integer, and the power of two to multiply it with. Cut off, not rounded.

@@ -118,6 +118,13 @@ impl<const N: usize, L: Lanes<N>> Judged<N, L> {
         !(below & above) & ((1 << N) - 1)
     }
 
+    /// Where a hit would be reported by who does not ask for proof.
+    #[inline(always)]
+    pub(super) fn plain(&self) -> u32 {
+        let zero = L::splat(0.0);
+        zero.at_most(self.least) | self.most.at_most(zero)
+    }
+
     /// Where the line meets the triangle's inside for certain.
     #[inline(always)]
     pub(super) fn sure(&self) -> u32 {

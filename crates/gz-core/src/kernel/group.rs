@@ -1,6 +1,7 @@
 //! Eight triangles side by side, for the leaves of a tree, and one ray against them.
 
 use super::filter::{FilterRay, Judged, distance, judge};
+use super::plain_f32::plain_distance;
 use super::space::FilterSpace;
 use crate::simd::{Lanes, Simd, load3, splat3};
 use crate::{GzCoord, NO_TRI, TriId};
@@ -68,6 +69,9 @@ impl TriGroup {
     #[inline(always)]
     pub fn candidates<S: Simd>(&self, ray: &FilterRay) -> Option<Candidates> {
         let lines = Lines::<S::Eight>::of(self, ray);
+        if !S::CERTIFIED {
+            return lines.plain(self);
+        }
         match lines.judged.possible() {
             0 => None,
             possible => Some(lines.candidates(self, ray, possible)),
@@ -120,6 +124,17 @@ impl<L: Lanes<8>> Lines<L> {
         let (m_error, d_error) = (ray.margin.depth(self.size, self.away), ray.margin.along(self.size));
         let (lo, hi, known) = distance(m, m_error, self.along, d_error);
         Candidates { possible, sure: self.judged.sure() & known, lo: lo.array(), hi: hi.array() }
+    }
+
+    /// The triangles that plain f32 takes for hit, surely as it seems.
+    #[inline(always)]
+    fn plain(&self, group: &TriGroup) -> Option<Candidates> {
+        let possible = self.judged.plain();
+        if possible == 0 {
+            return None;
+        }
+        let t = plain_distance(dot(load3(&group.e2), self.q), self.along).array();
+        Some(Candidates { possible, sure: possible, lo: t, hi: t })
     }
 }
 

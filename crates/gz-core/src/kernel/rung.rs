@@ -91,6 +91,20 @@ mod tests {
     }
 
     #[test]
+    fn a_wide_ground_leaves_to_f32_what_stands_on_it() {
+        // A post 5 high and 0.1 wide on a ground of 1260 by 1260, a ray to a point of it near an edge.
+        let post = [[4.91, 0.1, -3.25], [4.82, 5.38, -3.34], [4.82, 0.22, -3.34]].map(GzCoord::from_array);
+        let eye = GzCoord::new(0.7, 4.7, 13.2);
+        let ray = GzRay::new(eye, post[0].lerp(post[1], 0.5).lerp(post[2], 0.01) - eye);
+        let reach = GzCoord::new(630.0, 5.6, 630.0);
+        assert_eq!(rung(&ray, &post, Some(&FilterSpace::new(reach))), (true, Rung::F32));
+        // The same with the ground's height stretched to its width.
+        let scale = GzCoord::new(1.0, 64.0, 1.0);
+        let stretched = FilterSpace { scale, reach: reach * scale };
+        assert_eq!(rung(&ray, &post, Some(&stretched)), (true, Rung::F64));
+    }
+
+    #[test]
     fn rays_beyond_the_range_of_f32_begin_in_f64() {
         let ray = GzRay::from_f64(DVec3::new(1.0, 1.0, -1e30), GzCoord::Z);
         assert_eq!(rung(&ray, &triangle(), Some(&FilterSpace::new(GzCoord::splat(8.0)))), (true, Rung::F64));

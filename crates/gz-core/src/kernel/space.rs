@@ -15,8 +15,9 @@ pub struct FilterSpace {
     pub reach: GzCoord,
 }
 
-/// Axes that reach this much less far than the longest are stretched.
-const UNEVEN: f32 = 64.0;
+/// 2^16: axes that reach this much less far than the longest are stretched. Not before: where only a wide ground makes a scene flat,
+/// stretching turns the triangles of all that stands on it into needles, about which f32 decides little.
+const UNEVEN: f32 = (1u32 << 16) as f32;
 /// 2^30: what an axis is stretched by at most.
 const MOST: f32 = (1u32 << 30) as f32;
 
@@ -55,7 +56,7 @@ mod tests {
         assert_eq!(space.reach, GzCoord::new(1_258_291_200.0, 0.0, 2e9));
         let bounds = Bounds { min: GzCoord::new(-0.1, 0.0, 7.0), max: GzCoord::new(299.9, 0.0, 2e9) };
         assert_eq!(space.shrink(&space.stretch(&bounds)), bounds);
-        for even in [GzCoord::new(5.0, 1.0, 60.0), GzCoord::ZERO, GzCoord::splat(f32::MAX)] {
+        for even in [GzCoord::new(630.0, 5.6, 630.0), GzCoord::ZERO, GzCoord::splat(f32::MAX)] {
             assert_eq!(FilterSpace::new(even), FilterSpace { scale: GzCoord::ONE, reach: even });
         }
         assert_eq!(FilterSpace::new(GzCoord::new(1e-30, 1.0, 1.0)).scale.x, MOST);

@@ -7,6 +7,7 @@ use super::filter::{Judged, distance, judge};
 use super::group::{TriGroup, cross, dot, minus3};
 use super::nearest::Asked;
 use super::order::is_hit;
+use super::plain_f32::plain_distance;
 use super::spans::{BOUND, Spans};
 use crate::simd::{Lanes, Simd, arrays3, load3, splat3};
 use crate::{GzCoord, GzRay, NO_TRI, RayBatch, Targets, TriId};
@@ -50,14 +51,14 @@ impl RayBundle {
                     continue;
                 }
                 let lines = self.lines::<S>(group, &prepared, k, p);
-                let possible = lines.judged.possible() & together[p] & !<S::Sixteen>::same(&self.tris[p], tri);
+                let possible = lines.possible::<S>() & together[p] & !<S::Sixteen>::same(&self.tris[p], tri);
                 if possible == 0 {
                     continue;
                 }
                 let (lo, hi, known) = self.distances::<S>(&prepared, k, p, lines.along);
                 let tmin = <S::Sixteen>::load(&self.tmin[p]);
                 let (near, limit) = (<S::Sixteen>::load(&self.near[p]), <S::Sixteen>::load(&self.limit[p]));
-                let sure = lines.judged.sure() & known & possible;
+                let sure = lines.sure::<S>(known) & possible;
                 let better = sure & hi.below(near) & tmin.below(lo);
                 let worse = sure & (limit.below(lo) | hi.below(tmin));
                 if better != 0 {
@@ -69,7 +70,7 @@ impl RayBundle {
                     self.found[p] |= better;
                 }
                 let unsure = possible & !(better | worse);
-                if unsure != 0 {
+                if S::CERTIFIED && unsure != 0 {
                     self.settle(rays, p, unsure, tri, targets.positions());
                 }
             }
@@ -127,17 +128,17 @@ impl RayBundle {
                     continue;
                 }
                 let lines = self.lines::<S>(group, &prepared, k, p);
-                let possible = lines.judged.possible() & together[p] & !<S::Sixteen>::same(&self.tris[p], tri);
+                let possible = lines.possible::<S>() & together[p] & !<S::Sixteen>::same(&self.tris[p], tri);
                 if possible == 0 {
                     continue;
                 }
                 let (lo, hi, known) = self.distances::<S>(&prepared, k, p, lines.along);
                 let (tmin, limit) = (<S::Sixteen>::load(&self.tmin[p]), <S::Sixteen>::load(&self.limit[p]));
-                let sure = lines.judged.sure() & known & possible;
+                let sure = lines.sure::<S>(known) & possible;
                 let mut hit = sure & hi.below(limit) & tmin.below(lo);
                 let missed = sure & (limit.below(lo) | hi.below(tmin));
                 let unsure = possible & !(hit | missed);
-                if unsure != 0 {
+                if S::CERTIFIED && unsure != 0 {
                     hit |= self.settle_any(rays, p, unsure, targets.position(tri));
                 }
                 together[p] &= !hit;
@@ -213,6 +214,10 @@ impl RayBundle {
         if !self.common_origin {
             m = m.minus(dot(self.packet_of(&self.shift, p), splat3(of_lane(&prepared.normal, k))));
         }
+        if !S::CERTIFIED {
+            let t = plain_distance(m, along);
+            return (t, t, !0);
+        }
         let (m_error, d_error) = (<S::Sixteen>::splat(prepared.depth_error[k]), <S::Sixteen>::splat(prepared.along_error[k]));
         distance(m, m_error, along, d_error)
     }
@@ -250,6 +255,19 @@ struct Lines<L> {
     along: L,
 }
 
+impl<L: Lanes<LANES>> Lines<L> {
+    #[inline(always)]
+    fn possible<S: Simd>(&self) -> u32 {
+        if S::CERTIFIED { self.judged.possible() } else { self.judged.plain() }
+    }
+
+    /// Of those that are possible, where `known` says that the distance can be trusted.
+    #[inline(always)]
+    fn sure<S: Simd>(&self, known: u32) -> u32 {
+        if S::CERTIFIED { self.judged.sure() & known } else { !0 }
+    }
+}
+
 /// What a group's triangles have in common for all rays of a bundle: e2 x A, A x e1 and the normal for A seen from the centre.
 pub(super) struct Prepared {
     p: [[f32; 8]; 3],
@@ -275,9 +293,12 @@ impl Prepared {
         let (v, v_radius) = spans.interval(bundle, p, e2);
         let (w, w_radius) = spans.interval(bundle, q, minus3(splat3([0.0; 3]), e1));
         let (u, u_radius) = spans.interval(bundle, minus3(minus3(normal, p), q), minus3(e1, e2));
-        let bound_of_all = bound.times(<S::Eight>::splat(BOUND));
-        let most = u.plus(u_radius).min(v.plus(v_radius)).min(w.plus(w_radius)).plus(bound_of_all);
-        let least = u.minus(u_radius).max(v.minus(v_radius)).max(w.minus(w_radius)).minus(bound_of_all);
+        let mut most = u.plus(u_radius).min(v.plus(v_radius)).min(w.plus(w_radius));
+        let mut least = u.minus(u_radius).max(v.minus(v_radius)).max(w.minus(w_radius));
+        if S::CERTIFIED {
+            let bound_of_all = bound.times(<S::Eight>::splat(BOUND));
+            (most, least) = (most.plus(bound_of_all), least.minus(bound_of_all));
+        }
         let zero = <S::Eight>::splat(0.0);
         // NaN proves nothing.
         let missed = most.below(zero) & zero.below(least);
