@@ -130,6 +130,37 @@ fn a06_ray_exactly_through_an_edge() {
 }
 
 #[test]
+fn a06_one_rounding_of_f64_beside_an_edge() {
+    // The rays of A6, each then moved to either side by the least step that its f64 origin can take.
+    let (mesh, mut dice) = (meshes::cube(), Dice::new(66));
+    let (triangles, edges) = (mesh.triangles(), mesh.edges());
+    let mut rays = Vec::new();
+    for k in 0..400 {
+        let [a, b] = edges[k % edges.len()].map(|p| mesh.points[p]);
+        let origin = dice.whole_point(2) + GzCoord::splat(0.5);
+        let on_edge = GzRay::new(origin, (a + b) * 0.5 - origin);
+        let axis = k % 3;
+        for step in [f64::next_down, |x| x, f64::next_up] {
+            let mut beside = on_edge;
+            beside.origin[axis] = step(beside.origin[axis]);
+            rays.push(beside);
+        }
+    }
+    let hits = settled("A6, beside", &buffer(triangles.iter().copied()), &rays);
+    // From inside nothing gets through, and on many edges the two sides are different triangles.
+    let mut sides = 0;
+    for (rays, hits) in rays.chunks(3).zip(hits.chunks(3)) {
+        let tied = ties(&triangles, &rays[1]);
+        if rays[1].origin.abs().max_element() < 3.0 {
+            assert!(hits.iter().all(Hit::is_hit), "{rays:?}: {hits:?}");
+        }
+        assert!(hits.iter().all(|hit| !hit.is_hit() || tied.contains(&hit.tri)), "{rays:?}: {hits:?} of {tied:?}");
+        sides += u32::from(hits[0].tri != hits[2].tri);
+    }
+    assert!(sides > 100, "{sides} of 400 edges have another triangle on either side");
+}
+
+#[test]
 fn a07_ray_exactly_through_a_vertex() {
     let mut dice = Dice::new(7);
     for (mesh, many) in [(meshes::cube(), 500), (meshes::spindle(32), 60)] {

@@ -158,6 +158,37 @@ fn e07_hit_exactly_at_tmax() {
 }
 
 #[test]
+fn e07_rays_that_end_or_begin_where_they_hit() {
+    let mut dice = Dice::new(77);
+    let (triangles, rays) = scene(&mut dice, 60, 400);
+    let tris = buffer(triangles.iter().copied());
+    let hits = settled("E7, whole rays", &tris, &rays);
+    // T is the exact t rounded, so of the ends T and both its neighbours one lies on the other side of t than the others.
+    let mut ended = Vec::new();
+    for (ray, hit) in rays.iter().zip(&hits).filter(|(_, hit)| hit.is_hit()) {
+        for end in [hit.t.next_down(), hit.t, hit.t.next_up()] {
+            ended.push((hit, true, GzRay { tmax: end, ..*ray }));
+            ended.push((hit, false, GzRay { tmin: end, ..*ray }));
+        }
+    }
+    let alone: Vec<GzRay> = ended.iter().map(|(_, _, ray)| *ray).collect();
+    let found = settled("E7, ends at hits", &tris, &alone);
+    let (mut before, mut beyond) = (0, 0);
+    for (k, ((whole, ends, _), hit)) in ended.iter().zip(&found).enumerate() {
+        let same = hit.tri == whole.tri && hit.t.to_bits() == whole.t.to_bits();
+        match (*ends, k % 6 / 2) {
+            // Ends before T's lower neighbour, or begins after the upper one: the hit is left out.
+            (true, 0) | (false, 2) => assert!(!same, "{whole:?}"),
+            (true, 2) | (false, 0) => assert!(same, "{whole:?}: {hit:?}"),
+            (true, _) => before += u32::from(same),
+            (false, _) => beyond += u32::from(same),
+        }
+    }
+    // At T itself the rounding has gone either way.
+    assert!(before > 20 && beyond > 20, "{before} and {beyond} of {}", ended.len() / 6);
+}
+
+#[test]
 fn e08_sixty_orders_of_magnitude_in_one_scene() {
     let triangles: Vec<[GzCoord; 3]> = (-30..=30)
         .map(|k| [[-1.0, -1.0, 1.0], [1.0, -1.0, 1.0], [0.0, 1.0, 1.0]].map(|p| GzCoord::from_array(p) * 10f32.powi(k)))

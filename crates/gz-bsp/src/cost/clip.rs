@@ -82,6 +82,69 @@ mod tests {
         }
     }
 
+    /// Corners and planes are whole numbers, so that f64 holds every number compared here exactly: 13 bits, 26 after one product.
+    #[test]
+    fn where_edges_cross_a_plane_both_parts_reach_and_hardly_further() {
+        let mut state = 11u64;
+        let mut whole = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 52) as f32 - 2048.0
+        };
+        let (mut crossings, mut rounded) = (0, 0);
+        for round in 0..20_000 {
+            let corners: [Vec3; 3] = std::array::from_fn(|_| Vec3::new(whole(), whole(), whole()));
+            let (axis, plane) = (round % 3, whole());
+            let bounds = Bounds::of(corners);
+            if !(bounds.min[axis] < plane && plane < bounds.max[axis]) {
+                continue;
+            }
+            let parts = Reference::whole(0, &corners).split(axis, plane, &corners).map(|part| part.unwrap().bounds.bounds());
+            for corner in corners {
+                let part = &parts[usize::from(corner[axis] > plane)];
+                assert!(part.holds(corner), "{corners:?} {axis} {plane}");
+            }
+            // What each part must hold along an axis: its corners, and where edges cross.
+            for k in 0..3 {
+                let (a, b) = (corners[k].as_dvec3(), corners[(k + 1) % 3].as_dvec3());
+                let (way, along) = (b[axis] - a[axis], f64::from(plane) - a[axis]);
+                if along * (b[axis] - f64::from(plane)) <= 0.0 {
+                    continue;
+                }
+                crossings += 1;
+                for other in (0..3).filter(|&other| other != axis) {
+                    // The crossing times |way|.
+                    let exact = (a[other] * way + (b[other] - a[other]) * along) * way.signum();
+                    for part in &parts {
+                        let [low, high] = [part.min[other], part.max[other]].map(|end| f64::from(end) * way.abs());
+                        assert!(low <= exact && exact <= high, "{corners:?} {axis} {plane}: {low} {exact} {high}");
+                        rounded += u32::from(low == exact || exact == high);
+                    }
+                }
+            }
+            for (side, part) in parts.iter().enumerate() {
+                for other in (0..3).filter(|&other| other != axis) {
+                    let near = |p: &Vec3| if side == 0 { p[axis] <= plane } else { p[axis] >= plane };
+                    let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+                    let mut take = |x: f64| ends = [ends[0].min(x), ends[1].max(x)];
+                    for k in 0..3 {
+                        let (a, b) = (corners[k], corners[(k + 1) % 3]);
+                        if near(&a) {
+                            take(f64::from(a[other]));
+                        }
+                        if (a[axis] - plane) * (b[axis] - plane) < 0.0 {
+                            let (a, b) = (a.as_dvec3(), b.as_dvec3());
+                            take(a[other] + (b[other] - a[other]) * ((f64::from(plane) - a[axis]) / (b[axis] - a[axis])));
+                        }
+                    }
+                    // Two steps of f32 at 2048 at most.
+                    let slack = 2.0 / 4096.0;
+                    assert!(f64::from(part.min[other]) >= ends[0] - slack && f64::from(part.max[other]) <= ends[1] + slack);
+                }
+            }
+        }
+        assert!(crossings > 15_000, "{crossings} crossings, {rounded} ends exactly there");
+    }
+
     #[test]
     fn a_part_that_earlier_cuts_removed_is_none() {
         let corners = [[0.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 0.1, 0.0]].map(Vec3::from_array);
