@@ -25,7 +25,7 @@ impl<'a, Q: RayQuery + ?Sized> Counting<'a, Q> {
         self.closest.load(Ordering::Relaxed)
     }
 
-    /// Rays asked for their front-most hit among some classes only: shadow rays on their way through glass.
+    /// Rays asked about some classes only: shadow rays on their way through glass.
     pub fn through_glass(&self) -> u64 {
         self.through_glass.load(Ordering::Relaxed)
     }
@@ -57,7 +57,9 @@ impl<Q: RayQuery + ?Sized> RayQuery for Counting<'_, Q> {
     }
 
     fn any_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, occluded: &mut [bool]) {
-        self.any.fetch_add(rays.len() as u64, Ordering::Relaxed);
+        // Rays that something is in the way of are asked again whether something opaque is.
+        let counter = if classes == ClassMask::ALL { &self.any } else { &self.through_glass };
+        counter.fetch_add(rays.len() as u64, Ordering::Relaxed);
         self.inner.any_hits(rays, classes, occluded);
     }
 }

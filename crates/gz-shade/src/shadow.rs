@@ -77,6 +77,11 @@ impl ShadowRays {
     }
 }
 
+/// Whether there is glass for shadow rays to go through.
+fn has_glass(scene: &Scene) -> bool {
+    scene.materials.iter().zip(&scene.used).any(|(material, &used)| used > 0 && material.class() == TriClass::Glass)
+}
+
 /// The triangles that let no light through.
 fn blockers(scene: &Scene) -> ClassMask {
     match scene.rules.shadow {
@@ -112,29 +117,63 @@ pub(crate) struct Shadows {
 impl Shadows {
     /// Traces `rays`; returns how many further questions were asked about glass in the way.
     pub(crate) fn trace(&mut self, scene: &Scene, query: &dyn RayQuery, rays: &ShadowRays, common_direction: bool) -> u64 {
-        let tinted = scene.rules.shadow == ShadowRule::Tinted;
-        let blockers = blockers(scene);
-        let batch = rays.batch(common_direction, scene.rules.leave);
+        let tinted = scene.rules.shadow == ShadowRule::Tinted && has_glass(scene);
+        let policy = scene.rules.leave;
+        let batch = rays.batch(common_direction, policy);
         self.blocked.clear();
-        if scene.rules.leave.skips_source() {
+        if policy.skips_source() {
             // *That* something is hit is not enough: it may be the triangle left.
-            rays.closest(scene, query, &batch, blockers, &mut self.hits);
+            rays.closest(scene, query, &batch, blockers(scene), &mut self.hits);
             self.blocked.extend(self.hits.iter().map(Hit::is_hit));
         } else {
             self.blocked.resize(batch.len(), false);
-            query.any_hits(&batch, blockers, &mut self.blocked);
+            query.any_hits(&batch, ClassMask::ALL, &mut self.blocked);
         }
         self.shares.clear();
         self.shares.extend(self.blocked.iter().map(|&blocked| if blocked { GzColor::ZERO } else { GzColor::ONE }));
-        if tinted { self.tint(scene, query, rays) } else { 0 }
+        if !tinted {
+            return 0;
+        }
+        self.on_way.clear();
+        if policy.skips_source() {
+            self.on_way.extend((0..rays.origins.len() as u32).filter(|&k| !self.blocked[k as usize]));
+            return self.tint(scene, query, rays);
+        }
+        self.meet_glass_alone(scene, query, rays, common_direction) + self.tint(scene, query, rays)
     }
 
-    /// Multiplies the shares of rays that nothing opaque blocks by the tint of each glass triangle in the way, nearest first. Light
+    /// Of the rays that something is in the way of, finds those that only glass is in the way of, and gives them their light back. Most
+    /// rays meet nothing at all, and have been asked about once by now.
+    fn meet_glass_alone(&mut self, scene: &Scene, query: &dyn RayQuery, rays: &ShadowRays, common_direction: bool) -> u64 {
+        self.on_way.extend((0..rays.origins.len() as u32).filter(|&k| self.blocked[k as usize]));
+        if self.on_way.is_empty() {
+            return 0;
+        }
+        self.rest.clear();
+        for &k in &self.on_way {
+            self.rest.push(&rays.ray(k as usize));
+        }
+        let batch = self.rest.batch(common_direction, scene.rules.leave);
+        self.blocked.clear();
+        self.blocked.resize(batch.len(), false);
+        query.any_hits(&batch, blockers(scene), &mut self.blocked);
+        let questions = self.on_way.len() as u64;
+        let mut place = 0;
+        self.on_way.retain(|&k| {
+            let blocked = self.blocked[place];
+            place += 1;
+            if !blocked {
+                self.shares[k as usize] = GzColor::ONE;
+            }
+            !blocked
+        });
+        questions
+    }
+
+    /// Multiplies the shares of the rays on their way by the tint of each glass triangle that they meet, nearest first. Light
     /// goes straight through: no refraction, hence no caustics.
     fn tint(&mut self, scene: &Scene, query: &dyn RayQuery, rays: &ShadowRays) -> u64 {
         let mut questions = 0;
-        self.on_way.clear();
-        self.on_way.extend((0..rays.origins.len() as u32).filter(|&k| !self.blocked[k as usize]));
         self.tmin.clear();
         self.tmin.resize(self.on_way.len(), scene.rules.leave.tmin());
         while !self.on_way.is_empty() {

@@ -56,6 +56,17 @@ fn tints_of_several_panes_multiply_and_something_opaque_ends_it() {
 }
 
 #[test]
+fn only_rays_that_something_is_in_the_way_of_are_asked_about_glass() {
+    // The pane's shadow has `touched` pixels; behind it each ray asks once for what is opaque, then for glass until it meets no more.
+    let blocked = with_pane(matt()).shade();
+    let touched = blocked.colors.iter().filter(|&&color| color == GzColor::ZERO).count() as u64;
+    assert!(touched > 0 && touched < 200, "{touched}");
+    let tinted = with_pane(red_glass()).shade();
+    assert_eq!((blocked.stats.tint_queries, tinted.stats.tint_queries), (0, touched * 3));
+    assert_eq!(tinted.stats.shadow_rays, blocked.stats.shadow_rays);
+}
+
+#[test]
 fn no_shadow_ray_goes_to_a_light_that_adds_nothing() {
     let mut made = lit_wall();
     made.lights = vec![sun([0.0, 0.3, -1.0])];

@@ -205,7 +205,9 @@ impl RayQuery for Counted<'_> {
     }
 
     fn any_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, occluded: &mut [bool]) {
-        self.any.fetch_add(rays.len() as u64, Ordering::Relaxed);
+        // A question about opaque triangles alone is a further one about glass, which `closest` has the others of.
+        let counter = if classes == ClassMask::ALL { &self.any } else { &self.closest };
+        counter.fetch_add(rays.len() as u64, Ordering::Relaxed);
         self.brute.any_hits(rays, classes, occluded);
     }
 }
