@@ -187,7 +187,7 @@ fn follow(tris: &TriBuffer, asked: &[Asked]) -> Left {
     let (mut left, mut sources) = (Left::default(), Vec::<Source>::new());
     // Starting points are a few roundings of f64 from the point of the hit.
     let near = 1e-12 * f64::from(tris.bounds().reaches().max_element());
-    for (k, batch) in asked.iter().enumerate().filter(|(_, batch)| batch.classes == ClassMask::ALL || batch.hits.is_none()) {
+    for (k, batch) in asked.iter().enumerate().filter(|(_, batch)| batch.classes == ClassMask::ALL) {
         sources.sort_by(|a, b| a.point.x.total_cmp(&b.point.x));
         for (i, ray) in batch.rays.iter().enumerate().filter(|_| k > 0) {
             let from = sources.partition_point(|source| source.point.x < ray.origin.x - near);
