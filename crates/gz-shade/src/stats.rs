@@ -7,7 +7,7 @@ pub struct FrameStats {
     pub primary_rays: u64,
     /// Shadow rays: one for each light that would add something to a hit that counts.
     pub shadow_rays: u64,
-    /// Further questions that shadow rays asked about glass in their way.
+    /// Further questions of shadow rays that something is in the way of, in scenes with glass: whether it is opaque, and what glass they meet.
     pub tint_queries: u64,
     /// Rays reflected by mirrors.
     pub mirror_rays: u64,
