@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_through_a_corner_is_decided_in_whole_numbers() {
+    fn a_ray_through_a_corner_is_not_left_to_f32() {
         let scene = bench_scene("teapot:3").unwrap();
         let tree = BspTree::build(&scene.tris);
         let [corner, ..] = *scene.tris.position(500);
