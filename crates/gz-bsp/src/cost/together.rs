@@ -10,7 +10,7 @@
 use super::slabs::BundleSlabs;
 use super::walk::Stack;
 use super::wide::{BspTree, Child, Target, Way, WideNode};
-use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, Spans, TriGroup, count, greatest, least};
+use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, Spans, TriGroup, count, extremes, greatest, least};
 use gz_core::simd::{Lanes, Simd};
 use gz_core::{RayBatch, Targets};
 
@@ -85,16 +85,23 @@ impl Beam {
     #[inline(always)]
     fn of<S: Simd>(bundle: &RayBundle, slabs: &BundleSlabs, way: Way, company: &Rays) -> Self {
         let mut beam = Self { way, span: [[0.0; 4]; 3], tmin: least::<S>(&bundle.tmin, company) };
+        let inverse = extremes::<S>(&slabs.inverse, &slabs.inverse, company);
+        let [leave, enter] = extremes::<S>(&slabs.leave, &slabs.enter, company);
         for axis in 0..3 {
-            let (inverse, enter, leave) = (&slabs.inverse[axis], &slabs.enter[axis], &slabs.leave[axis]);
-            beam.span[axis] = [
-                least::<S>(inverse, company),
-                greatest::<S>(inverse, company),
-                greatest::<S>(enter, company),
-                least::<S>(leave, company),
-            ];
+            beam.span[axis] = [inverse[0][axis], inverse[1][axis], enter[axis], leave[axis]];
         }
         beam
+    }
+
+    /// The planes where rays enter a cell and leave it.
+    #[inline(always)]
+    fn ends<L: Lanes<LANES>>(&self, node: &WideNode, slot: usize) -> [[L; 2]; 3] {
+        let mut ends = [[L::splat(0.0); 2]; 3];
+        for axis in 0..3 {
+            let [first, last] = node.ends(&self.way, axis);
+            ends[axis] = [L::splat(first[slot]), L::splat(last[slot])];
+        }
+        ends
     }
 
     /// Entries of the cells for the interval of all rays, and a bit for each cell that it crosses before `limit`.
@@ -113,21 +120,13 @@ impl Beam {
     }
 }
 
-/// Entries of a packet's rays into one cell, and a bit for each ray that crosses it before its limit.
+/// Entries of a packet's rays into the cell with these planes, and a bit for each ray that crosses it before its limit.
 #[inline(always)]
-fn cross_one<L: Lanes<LANES>>(
-    bundle: &RayBundle,
-    slabs: &BundleSlabs,
-    beam: &Beam,
-    node: &WideNode,
-    slot: usize,
-    p: usize,
-) -> (L, u32) {
+fn cross_one<L: Lanes<LANES>>(bundle: &RayBundle, slabs: &BundleSlabs, ends: &[[L; 2]; 3], p: usize) -> (L, u32) {
     let (mut enter, mut leave) = (L::load(&bundle.tmin[p]), L::load(&bundle.limit[p]));
     for axis in 0..3 {
         let inverse = L::load(&slabs.inverse[axis][p]);
-        let [first, last] = node.ends(&beam.way, axis);
-        let (first, last) = (L::splat(first[slot]), L::splat(last[slot]));
+        let [first, last] = ends[axis];
         enter = enter.max(first.mul_sub(inverse, L::load(&slabs.enter[axis][p])));
         leave = leave.min(last.mul_sub(inverse, L::load(&slabs.leave[axis][p])));
     }
@@ -152,8 +151,8 @@ impl BspTree<'_> {
         }
         let beam = Beam::of::<S>(quest.bundle(), slabs, way, company);
         let mut greatest_limit = greatest::<S>(&quest.bundle().limit, company);
+        let mut spans = Spans::default();
         // Rays whose quest is not over, and those of them that cross the node.
-        let spans = Spans::of::<S>(quest.bundle(), company);
         let (mut live, mut active) = (*company, *company);
         queue.len = 0;
         let mut at = 0;
@@ -165,13 +164,14 @@ impl BspTree<'_> {
             for &slot in &order[..cells] {
                 let slot = usize::from(slot & 7);
                 let waiting = &mut queue.cells[queue.len];
+                let ends = beam.ends::<S::Sixteen>(node, slot);
                 let mut any = 0;
                 for p in 0..PACKETS {
                     if active[p] == 0 {
                         waiting.rays[p] = 0;
                         continue;
                     }
-                    let (entries, crossed) = cross_one::<S::Sixteen>(quest.bundle(), slabs, &beam, node, slot, p);
+                    let (entries, crossed) = cross_one::<S::Sixteen>(quest.bundle(), slabs, &ends, p);
                     waiting.rays[p] = crossed & active[p];
                     if Q::ORDERED {
                         entries.store(&mut waiting.entries[p]);
@@ -190,6 +190,7 @@ impl BspTree<'_> {
                 if crossings * 100 < count(company) * cells as u32 * TOGETHER {
                     return false;
                 }
+                spans = Spans::of::<S>(quest.bundle(), company);
             }
             at = loop {
                 if queue.len == 0 {

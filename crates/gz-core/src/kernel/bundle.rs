@@ -165,6 +165,7 @@ impl RayBundle {
                 }
             }
             PerRay::Each(all) => {
+                let mut halves = [[<S::Eight>::splat(0.0); 2]; 3];
                 for half in 0..2 {
                     let first = (half * 8).min(len - 1);
                     let eight = coordinates_f64(&all[from + first..from + len.min(first + 8)]);
@@ -177,8 +178,12 @@ impl RayBundle {
                             *eight_mut(&mut self.exact_origin[axis][p], half) = points[axis].array();
                         }
                         let stretched = points[axis].times(<S::Doubles>::splat(f64::from(self.scale[axis])));
-                        stretched.narrow(eight_mut(&mut self.origin[axis][p], half));
+                        halves[axis][half] = S::narrow(stretched);
                     }
+                }
+                // In one piece, as what is written in two stalls who reads it at once.
+                for axis in 0..3 {
+                    S::join(halves[axis][0], halves[axis][1]).store(&mut self.origin[axis][p]);
                 }
             }
         }
@@ -216,21 +221,16 @@ impl RayBundle {
         let zero = <S::Sixteen>::splat(0.0);
         let mut spread = zero;
         // The greatest of each component rather than of their sums: that is what `spans.rs` needs.
-        let mut size = 0.0;
-        for d in &self.direction {
-            let mut greatest = zero;
-            for p in 0..packets {
-                greatest = greatest.max(<S::Sixteen>::load(&d[p]).abs().select(fit[p], zero));
-            }
-            size += greatest.greatest();
-        }
+        let [low, high] = extremes::<S>(&self.direction, &self.direction, fit);
+        let size = low[0].abs().max(high[0]) + low[1].abs().max(high[1]) + low[2].abs().max(high[2]);
         let size = size * (1.0 + 2.0 * f32::EPSILON);
         let mut reach = 0.0f32;
+        let ends = match self.common_origin {
+            true => [[self.origin[0][0][0], self.origin[1][0][0], self.origin[2][0][0]]; 2],
+            false => extremes::<S>(&self.origin, &self.origin, fit),
+        };
         for axis in 0..3 {
-            let [least, greatest] = match self.common_origin {
-                true => [self.origin[axis][0][0]; 2],
-                false => [least::<S>(&self.origin[axis], fit), greatest::<S>(&self.origin[axis], fit)],
-            };
+            let (least, greatest) = (ends[0][axis], ends[1][axis]);
             self.centre[axis] = if self.common_origin { least } else { least * 0.5 + greatest * 0.5 };
             reach = reach.max(least.abs()).max(greatest.abs());
         }
@@ -244,17 +244,16 @@ impl RayBundle {
         for p in 0..packets {
             for axis in 0..3 {
                 let (centre, scale) = (f64::from(self.centre[axis]), f64::from(self.scale[axis]));
-                for half in 0..2 {
-                    if !S::CERTIFIED {
-                        let o = <S::Eight>::load(eight(&self.origin[axis][p], half));
-                        o.minus(<S::Eight>::splat(self.centre[axis])).store(eight_mut(&mut self.shift[axis][p], half));
-                        continue;
-                    }
-                    let o = <S::Doubles>::load(eight(&self.exact_origin[axis][p], half));
-                    let shift = o.times(<S::Doubles>::splat(scale)).minus(<S::Doubles>::splat(centre));
-                    shift.narrow(eight_mut(&mut self.shift[axis][p], half));
-                }
-                spread = spread.max(<S::Sixteen>::load(&self.shift[axis][p]).abs().select(fit[p], zero));
+                let shift = if S::CERTIFIED {
+                    let (scale, centre) = (<S::Doubles>::splat(scale), <S::Doubles>::splat(centre));
+                    let low = <S::Doubles>::load(eight(&self.exact_origin[axis][p], 0));
+                    let high = <S::Doubles>::load(eight(&self.exact_origin[axis][p], 1));
+                    S::join(S::narrow(low.times(scale).minus(centre)), S::narrow(high.times(scale).minus(centre)))
+                } else {
+                    <S::Sixteen>::load(&self.origin[axis][p]).minus(<S::Sixteen>::splat(self.centre[axis]))
+                };
+                shift.store(&mut self.shift[axis][p]);
+                spread = spread.max(shift.abs().select(fit[p], zero));
             }
             let (d, s) = (self.packet_of::<S::Sixteen>(&self.direction, p), self.packet_of::<S::Sixteen>(&self.shift, p));
             let moment = arrays3(cross(d, s));
@@ -267,7 +266,7 @@ impl RayBundle {
 
     #[inline(always)]
     pub(super) fn packet_of<L: Lanes<LANES>>(&self, rows: &[Each; 3], p: usize) -> [L; 3] {
-        [L::load(&rows[0][p]), L::load(&rows[1][p]), L::load(&rows[2][p])]
+        packet_of(rows, p)
     }
 
     /// Number of a ray in its batch.
@@ -354,7 +353,7 @@ fn drop_invalid(fit: &mut Rays, rays: &RayBatch<'_>, from: usize) {
 
 /// `x` where the bit is set, `other` elsewhere; as most sets are whole, that is looked at first.
 #[inline(always)]
-pub(super) fn some<L: Lanes<LANES>>(x: L, bits: u32, other: L) -> L {
+fn some<L: Lanes<LANES>>(x: L, bits: u32, other: L) -> L {
     if bits == WHOLE { x } else { x.select(bits, other) }
 }
 
@@ -378,11 +377,43 @@ pub fn greatest<S: Simd>(each: &Each, rays: &Rays) -> f32 {
     greatest.greatest()
 }
 
+/// The least of three numbers, and the greatest of three, of the rays in a set, which is not empty.
+#[inline(always)]
+pub fn extremes<S: Simd>(low: &[Each; 3], high: &[Each; 3], rays: &Rays) -> [[f32; 3]; 2] {
+    let zero = <S::Sixteen>::splat(0.0);
+    // The greatest with other signs.
+    let mut least = [<S::Sixteen>::splat(f32::INFINITY); 6];
+    for p in 0..PACKETS {
+        let (low, high) = (packet_of(low, p), packet_of(high, p));
+        let all: [S::Sixteen; 6] = [low[0], low[1], low[2], zero.minus(high[0]), zero.minus(high[1]), zero.minus(high[2])];
+        if rays[p] == WHOLE {
+            for k in 0..6 {
+                least[k] = all[k].min(least[k]);
+            }
+        } else if rays[p] != 0 {
+            for k in 0..6 {
+                least[k] = all[k].select(rays[p], least[k]).min(least[k]);
+            }
+        }
+    }
+    let [x, y, z, a] = <S::Sixteen>::least_of_each([least[0], least[1], least[2], least[3]]);
+    let [b, c, ..] = <S::Sixteen>::least_of_each([least[4], least[5], least[5], least[5]]);
+    [[x, y, z], [-a, -b, -c]]
+}
+
+#[inline(always)]
+fn packet_of<L: Lanes<LANES>>(rows: &[Each; 3], p: usize) -> [L; 3] {
+    [L::load(&rows[0][p]), L::load(&rows[1][p]), L::load(&rows[2][p])]
+}
+
 #[inline(always)]
 fn take(row: &mut Row, property: &PerRay<'_, f32>, from: usize, len: usize) {
     match property {
         PerRay::One(x) => *row = [*x; LANES],
-        PerRay::Each(all) => row[..len].copy_from_slice(&all[from..from + len]),
+        PerRay::Each(all) => match all[from..from + len].first_chunk() {
+            Some(all) => *row = *all,
+            None => row[..len].copy_from_slice(&all[from..from + len]),
+        },
     }
 }
 

@@ -24,7 +24,7 @@ mod together;
 mod woop;
 
 pub use answer::{answer_rung, hit_weights};
-pub use bundle::{BUNDLE, Each, LANES, PACKETS, RayBundle, Rays, Row, count, greatest, least};
+pub use bundle::{BUNDLE, Each, LANES, PACKETS, RayBundle, Rays, Row, count, extremes, greatest, least};
 pub(crate) use exact::side_sign;
 pub use filter::FilterRay;
 pub use group::{Candidates, TriGroup};

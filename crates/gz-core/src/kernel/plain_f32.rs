@@ -34,6 +34,11 @@ impl<S: Simd> Simd for PlainF32<S> {
     type Sixteen = S::Sixteen;
 
     #[inline(always)]
+    fn join(low: S::Eight, high: S::Eight) -> S::Sixteen {
+        S::join(low, high)
+    }
+
+    #[inline(always)]
     fn widen(x: S::Eight) -> S::Doubles {
         S::widen(x)
     }

@@ -16,7 +16,7 @@
 // Axes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::bundle::{Each, PACKETS, RayBundle, Rays, some};
+use super::bundle::{Each, RayBundle, Rays, extremes};
 use crate::simd::{Lanes, Simd};
 
 const E: f32 = f32::EPSILON / 2.0;
@@ -50,12 +50,16 @@ impl Spans {
     #[inline(always)]
     pub fn of<S: Simd>(bundle: &RayBundle, company: &Rays) -> Self {
         let mut spans = Self::default();
-        for axis in 0..3 {
-            let d = &bundle.direction[axis];
-            spans.direction[axis] = if bundle.common_direction { Span::new(d[0][0], d[0][0]) } else { span::<S>(d, company) };
-            if !bundle.common_origin {
-                spans.moment[axis] = span::<S>(&bundle.moment[axis], company);
+        if bundle.common_direction {
+            for axis in 0..3 {
+                let d = bundle.direction[axis][0][0];
+                spans.direction[axis] = Span::new(d, d);
             }
+        } else {
+            spans.direction = of_each::<S>(&bundle.direction, company);
+        }
+        if !bundle.common_origin {
+            spans.moment = of_each::<S>(&bundle.moment, company);
         }
         spans
     }
@@ -82,19 +86,11 @@ impl Spans {
     }
 }
 
-/// The interval of one number of the rays of `company`.
+/// The intervals of three numbers of the rays of `company`.
 #[inline(always)]
-fn span<S: Simd>(each: &Each, company: &Rays) -> Span {
-    let mut least = <S::Sixteen>::splat(f32::INFINITY);
-    let mut greatest = <S::Sixteen>::splat(f32::NEG_INFINITY);
-    for p in 0..PACKETS {
-        if company[p] != 0 {
-            let x = <S::Sixteen>::load(&each[p]);
-            least = some(x, company[p], least).min(least);
-            greatest = some(x, company[p], greatest).max(greatest);
-        }
-    }
-    Span::new(least.least(), greatest.greatest())
+fn of_each<S: Simd>(rows: &[Each; 3], company: &Rays) -> [Span; 3] {
+    let [least, greatest] = extremes::<S>(rows, rows, company);
+    [Span::new(least[0], greatest[0]), Span::new(least[1], greatest[1]), Span::new(least[2], greatest[2])]
 }
 
 #[cfg(test)]

@@ -23,6 +23,11 @@ pub trait Lanes<const N: usize>: Copy {
     fn least(self) -> f32;
     /// The greatest lane; none is NaN.
     fn greatest(self) -> f32;
+    /// The least lane of each row; none is NaN. Together, as the steps from lane to lane wait for one another.
+    #[inline(always)]
+    fn least_of_each(rows: [Self; 4]) -> [f32; 4] {
+        [rows[0].least(), rows[1].least(), rows[2].least(), rows[3].least()]
+    }
     /// Lane by lane `self + other`.
     fn plus(self, other: Self) -> Self;
     /// Lane by lane `self - other`.
@@ -119,8 +124,6 @@ pub trait EightDoubles: Doubles {
     fn widen(x: &[f32; 8]) -> Self;
     /// The lanes as an array.
     fn array(self) -> [f64; 8];
-    /// The lanes rounded to f32.
-    fn narrow(self, to: &mut [f32; 8]);
     /// Where `self` is at most `other`; clear for NaN.
     fn at_most(self, other: Self) -> u32;
 
@@ -148,6 +151,9 @@ pub trait Simd {
     type Eight: Lanes<8>;
     /// Sixteen numbers.
     type Sixteen: Lanes<16>;
+
+    /// Sixteen numbers from the lower and the upper eight.
+    fn join(low: Self::Eight, high: Self::Eight) -> Self::Sixteen;
 
     /// The lanes widened.
     fn widen(x: Self::Eight) -> Self::Doubles;
@@ -219,6 +225,11 @@ impl Simd for PortableSimd {
     type Sixteen = Pair<Portable>;
 
     #[inline(always)]
+    fn join(low: Portable, high: Portable) -> Pair<Portable> {
+        Pair(low, high)
+    }
+
+    #[inline(always)]
     fn widen(x: Portable) -> PortableDoubles {
         PortableDoubles(x.0.map(f64::from))
     }
@@ -234,7 +245,7 @@ impl Simd for PortableSimd {
 
 /// Two times eight lanes.
 #[derive(Clone, Copy)]
-pub(super) struct Pair<L>(L, L);
+pub(super) struct Pair<L>(pub(super) L, pub(super) L);
 
 /// Both halves of sixteen numbers.
 #[inline(always)]
@@ -284,6 +295,10 @@ impl<L: Lanes<8>> Lanes<16> for Pair<L> {
     #[inline(always)]
     fn greatest(self) -> f32 {
         self.0.max(self.1).greatest()
+    }
+    #[inline(always)]
+    fn least_of_each([a, b, c, d]: [Self; 4]) -> [f32; 4] {
+        L::least_of_each([a.0.min(a.1), b.0.min(b.1), c.0.min(c.1), d.0.min(d.1)])
     }
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
@@ -436,10 +451,6 @@ impl EightDoubles for PortableDoubles {
         self.0
     }
     #[inline(always)]
-    fn narrow(self, to: &mut [f32; 8]) {
-        *to = self.0.map(|x| x as f32);
-    }
-    #[inline(always)]
     fn at_most(self, other: Self) -> u32 {
         bits(|i| self.0[i] <= other.0[i])
     }
@@ -559,6 +570,7 @@ mod tests {
     fn everything<const N: usize, L: Lanes<N>>(a: [f32; N], b: [f32; N]) -> (Vec<f32>, Vec<u32>) {
         let (a, b, c) = (L::load(&a), L::load(&b), L::splat(2.0));
         let some = a.select(0b1010_0110_0011_0101, L::splat(5.0)).array().into_iter().chain([a.least(), a.greatest()]);
+        let some = some.chain(L::least_of_each([a, b, a.plus(c), L::splat(0.0).minus(a)]));
         let mut ids = std::array::from_fn(|i| i as u32 % 3);
         let two = L::same(&ids, 2);
         L::set_some(u32::MAX, 0b1001_0110_0011_0101, &mut ids);
@@ -618,7 +630,7 @@ mod tests {
         let expected = dispatch(SimdLevel::Portable, All);
         let (numbers, bits) = &expected[0];
         assert_eq!(numbers[..8], [3.0, -4.0, 3.75, 4.0, 15.5, 7.0, 1e30, 14.5]);
-        assert_eq!(numbers[72..], [1.0, 5.0, 3.5, 5.0, -0.5, 8.0, 5.0, 5.0, -2.0, 1e30]);
+        assert_eq!(numbers[72..], [1.0, 5.0, 3.5, 5.0, -0.5, 8.0, 5.0, 5.0, -2.0, 1e30, -2.0, -2.0, 0.0, -1e30]);
         const ALL: u32 = u32::MAX;
         assert_eq!(bits[..], [0b1001_1011, 0b1001_1001, 0b0010_0100, ALL, 1, ALL, 0, ALL, ALL, 0, 1]);
         assert_eq!(expected[1].1[..3], [0b0110_0110_1001_1011, 0b0110_0100_1001_1001, 0b0100_1001_0010_0100]);

@@ -35,6 +35,11 @@ impl Simd for Avx2Simd {
     type Sixteen = Pair<Avx2>;
 
     #[inline(always)]
+    fn join(low: Avx2, high: Avx2) -> Pair<Avx2> {
+        Pair(low, high)
+    }
+
+    #[inline(always)]
     fn widen(x: Avx2) -> Avx2Doubles {
         let (low, high) = (call!(_mm256_castps256_ps128(x.0)), call!(_mm256_extractf128_ps::<1>(x.0)));
         Avx2Doubles(call!(_mm256_cvtps_pd(low)), call!(_mm256_cvtps_pd(high)))
@@ -66,6 +71,11 @@ impl Simd for Avx512Simd {
     type Doubles = Avx512Doubles;
     type Eight = Avx2;
     type Sixteen = Avx512;
+
+    #[inline(always)]
+    fn join(low: Avx2, high: Avx2) -> Avx512 {
+        Avx512(call!(_mm512_insertf32x8::<1>(_mm512_castps256_ps512(low.0), high.0)))
+    }
 
     #[inline(always)]
     fn widen(x: Avx2) -> Avx512Doubles {
@@ -172,6 +182,15 @@ fn spread(bits: u32) -> __m256i {
     call!(_mm256_cmpeq_epi32(bits, each))
 }
 
+/// The numbers of a register.
+#[inline(always)]
+fn four(x: __m128) -> [f32; 4] {
+    let mut out = [0.0; 4];
+    // SAFETY: writes the 16 bytes of `out`, unaligned. SSE is part of x86-64.
+    unsafe { _mm_storeu_ps(out.as_mut_ptr(), x) };
+    out
+}
+
 impl Lanes<8> for Avx2 {
     #[inline(always)]
     fn splat(x: f32) -> Self {
@@ -213,6 +232,13 @@ impl Lanes<8> for Avx2 {
         let two = call!(_mm_max_ps(four, _mm_movehl_ps(four, four)));
         let one = call!(_mm_max_ss(two, _mm_movehdup_ps(two)));
         call!(_mm_cvtss_f32(one))
+    }
+    #[inline(always)]
+    fn least_of_each([a, b, c, d]: [Self; 4]) -> [f32; 4] {
+        let ab = call!(_mm256_min_ps(_mm256_unpacklo_ps(a.0, b.0), _mm256_unpackhi_ps(a.0, b.0)));
+        let cd = call!(_mm256_min_ps(_mm256_unpacklo_ps(c.0, d.0), _mm256_unpackhi_ps(c.0, d.0)));
+        let each = call!(_mm256_min_ps(_mm256_shuffle_ps::<0x44>(ab, cd), _mm256_shuffle_ps::<0xee>(ab, cd)));
+        four(call!(_mm_min_ps(_mm256_castps256_ps128(each), _mm256_extractf128_ps::<1>(each))))
     }
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
@@ -326,6 +352,14 @@ impl Lanes<16> for Avx512 {
     #[inline(always)]
     fn greatest(self) -> f32 {
         call!(_mm512_reduce_max_ps(self.0))
+    }
+    #[inline(always)]
+    fn least_of_each([a, b, c, d]: [Self; 4]) -> [f32; 4] {
+        let ab = call!(_mm512_min_ps(_mm512_unpacklo_ps(a.0, b.0), _mm512_unpackhi_ps(a.0, b.0)));
+        let cd = call!(_mm512_min_ps(_mm512_unpacklo_ps(c.0, d.0), _mm512_unpackhi_ps(c.0, d.0)));
+        let each = call!(_mm512_min_ps(_mm512_shuffle_ps::<0x44>(ab, cd), _mm512_shuffle_ps::<0xee>(ab, cd)));
+        let half = call!(_mm256_min_ps(_mm512_castps512_ps256(each), _mm512_extractf32x8_ps::<1>(each)));
+        four(call!(_mm_min_ps(_mm256_castps256_ps128(half), _mm256_extractf128_ps::<1>(half))))
     }
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
@@ -476,15 +510,6 @@ impl EightDoubles for Avx2Doubles {
         out
     }
     #[inline(always)]
-    fn narrow(self, to: &mut [f32; 8]) {
-        let (low, high) = (call!(_mm256_cvtpd_ps(self.0)), call!(_mm256_cvtpd_ps(self.1)));
-        // SAFETY: writes the 32 bytes of `to`, unaligned; features as above.
-        unsafe {
-            _mm_storeu_ps(to.as_mut_ptr(), low);
-            _mm_storeu_ps(to.as_mut_ptr().add(4), high);
-        }
-    }
-    #[inline(always)]
     fn unzip3(points: &[[f64; 3]; 8]) -> [Self; 3] {
         let start: *const f64 = points.as_ptr().cast();
         // SAFETY: the 24 numbers of `points` are read, twelve by each call; features as above.
@@ -576,11 +601,6 @@ impl EightDoubles for Avx512Doubles {
         // SAFETY: writes the 64 bytes of `out`, unaligned; features as above.
         unsafe { _mm512_storeu_pd(out.as_mut_ptr(), self.0) };
         out
-    }
-    #[inline(always)]
-    fn narrow(self, to: &mut [f32; 8]) {
-        // SAFETY: writes the 32 bytes of `to`, unaligned; features as above.
-        unsafe { _mm256_storeu_ps(to.as_mut_ptr(), _mm512_cvtpd_ps(self.0)) };
     }
     #[inline(always)]
     fn at_most(self, other: Self) -> u32 {
