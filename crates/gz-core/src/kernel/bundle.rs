@@ -255,18 +255,13 @@ impl RayBundle {
                 shift.store(&mut self.shift[axis][p]);
                 spread = spread.max(shift.abs().select(fit[p], zero));
             }
-            let (d, s) = (self.packet_of::<S::Sixteen>(&self.direction, p), self.packet_of::<S::Sixteen>(&self.shift, p));
+            let (d, s) = (packet_of::<S::Sixteen>(&self.direction, p), packet_of::<S::Sixteen>(&self.shift, p));
             let moment = arrays3(cross(d, s));
             for axis in 0..3 {
                 self.moment[axis][p] = moment[axis];
             }
         }
         self.margin = Margin::new(size, spread.greatest(), 0.0);
-    }
-
-    #[inline(always)]
-    pub(super) fn packet_of<L: Lanes<LANES>>(&self, rows: &[Each; 3], p: usize) -> [L; 3] {
-        packet_of(rows, p)
     }
 
     /// Number of a ray in its batch.
@@ -386,6 +381,7 @@ pub fn extremes<S: Simd>(low: &[Each; 3], high: &[Each; 3], rays: &Rays) -> [[f3
     for p in 0..PACKETS {
         let (low, high) = (packet_of(low, p), packet_of(high, p));
         let all: [S::Sixteen; 6] = [low[0], low[1], low[2], zero.minus(high[0]), zero.minus(high[1]), zero.minus(high[2])];
+        // As `some` has it, but looked at once for all six, which primary rays notice.
         if rays[p] == WHOLE {
             for k in 0..6 {
                 least[k] = all[k].min(least[k]);
@@ -401,8 +397,9 @@ pub fn extremes<S: Simd>(low: &[Each; 3], high: &[Each; 3], rays: &Rays) -> [[f3
     [[x, y, z], [-a, -b, -c]]
 }
 
+/// Three numbers of a packet's rays.
 #[inline(always)]
-fn packet_of<L: Lanes<LANES>>(rows: &[Each; 3], p: usize) -> [L; 3] {
+pub(super) fn packet_of<L: Lanes<LANES>>(rows: &[Each; 3], p: usize) -> [L; 3] {
     [L::load(&rows[0][p]), L::load(&rows[1][p]), L::load(&rows[2][p])]
 }
 

@@ -2,7 +2,7 @@
 // Packets, axes and lanes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::bundle::{LANES, PACKETS, RayBundle, Rays};
+use super::bundle::{LANES, PACKETS, RayBundle, Rays, packet_of};
 use super::filter::{Judged, distance, judge};
 use super::group::{TriGroup, cross, dot, minus3};
 use super::nearest::Asked;
@@ -194,12 +194,12 @@ impl RayBundle {
     /// Volumes of the rays of packet `p` and triangle `k` of a group.
     #[inline(always)]
     fn lines<S: Simd>(&self, group: &TriGroup, prepared: &Prepared, k: usize, p: usize) -> Lines<S::Sixteen> {
-        let d = self.packet_of::<S::Sixteen>(&self.direction, p);
+        let d = packet_of::<S::Sixteen>(&self.direction, p);
         let mut v = dot(d, splat3(of_lane(&prepared.p, k)));
         let mut w = dot(d, splat3(of_lane(&prepared.q, k)));
         let along = dot(d, splat3(of_lane(&prepared.normal, k)));
         if !self.common_origin {
-            let m = self.packet_of(&self.moment, p);
+            let m = packet_of(&self.moment, p);
             v = v.plus(dot(m, splat3(of_lane(&group.e2, k))));
             w = w.minus(dot(m, splat3(of_lane(&group.e1, k))));
         }
@@ -212,7 +212,7 @@ impl RayBundle {
     fn distances<S: Simd>(&self, prepared: &Prepared, k: usize, p: usize, along: S::Sixteen) -> (S::Sixteen, S::Sixteen, u32) {
         let mut m = <S::Sixteen>::splat(prepared.depth[k]);
         if !self.common_origin {
-            m = m.minus(dot(self.packet_of(&self.shift, p), splat3(of_lane(&prepared.normal, k))));
+            m = m.minus(dot(packet_of(&self.shift, p), splat3(of_lane(&prepared.normal, k))));
         }
         if !S::CERTIFIED {
             let t = plain_distance(m, along);
