@@ -2,13 +2,16 @@
 #![allow(unsafe_code)]
 
 mod control;
+mod doubles;
 mod lanes;
+mod portable;
 mod view;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 pub use control::with_default_float_control;
-pub use lanes::{Doubles, EightDoubles, Lanes, Simd, Task, arrays3, dispatch, load3, splat3};
+pub use doubles::{Doubles, EightDoubles};
+pub use lanes::{Lanes, Simd, Task, arrays3, dispatch, load3, splat3};
 use std::sync::OnceLock;
 pub use view::{coordinates, coordinates_f64, nine, numbers_of};
 
