@@ -1,8 +1,7 @@
 //! Leaving a surface: where a shadow, mirror or glass ray starts.
 
 use crate::GzCoord;
-use crate::kernel::side_sign;
-use crate::ray::LEAST_ORIGIN;
+use crate::kernel::{Leaving, side_sign, without_tiny};
 use glam::DVec3;
 
 const U: f64 = f64::EPSILON / 2.0;
@@ -28,77 +27,36 @@ pub fn side_of(corners: &[GzCoord; 3], direction: GzCoord) -> i8 {
 ///
 /// After the scheme of NUMERICS 4.4: pull in, form the point, step until the side is proved.
 pub fn leave_surface(corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoord) -> Option<DVec3> {
-    let side = side_of(corners, direction);
+    leave_to(corners, weights, side_of(corners, direction))
+}
+
+/// The same for a ray to `side`, see [`side_of`].
+pub(crate) fn leave_to(corners: &[GzCoord; 3], weights: [f64; 3], side: i8) -> Option<DVec3> {
     if side == 0 {
         return None;
     }
-    let [a, b, c] = corners.map(|p| p.as_dvec3());
-    let normal = (b - a).cross(c - a);
-    let combine = |w: [f64; 3]| a * w[0] + b * w[1] + c * w[2];
-    let corner_reach = corners.iter().fold(0f32, |reach, p| reach.max(p.abs().max_element()));
-    let mut point = combine(pulled_in(corners, weights, f64::from(corner_reach), normal.length()));
-
-    // A step of u times the largest coordinate is one rounding of the point; the point's own coordinate may be near 0, where its ulp
-    // would never get away. Steps double, so that the end is certain.
-    let (axis, towards) = way_out(corners, normal, side)?;
-    let mut step = U * point.abs().max_element().max(f64::from(corner_reach) * LEAST_SHARE);
-    point = without_tiny(point);
-    while !is_beyond(corners, point, side) {
-        point[axis] += towards * step;
-        point = without_tiny(point);
+    let Leaving { plane, mut point, mut step } = Leaving::of(&corners.map(|p| p.as_dvec3().to_array()), weights);
+    let (axis, towards) = way_out(corners, plane.normal, side)?;
+    point = point.map(without_tiny);
+    // Steps double, so that the end is certain.
+    while plane.side(corners, point) != i32::from(side) {
+        point[axis] = without_tiny(point[axis] + towards * step);
         step *= 2.0;
     }
-    Some(point)
+    Some(DVec3::from_array(point))
 }
-
-/// The least step in roundings of the largest corner coordinate, for a point at the origin of space: 2^-20.
-const LEAST_SHARE: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// The axis to step along and the direction on it that leads to `side`: the axis of the largest normal component, unless rounding
 /// has emptied the normal.
-fn way_out(corners: &[GzCoord; 3], normal: DVec3, side: i8) -> Option<(usize, f64)> {
-    let largest = largest_axis(normal);
+fn way_out(corners: &[GzCoord; 3], normal: [f64; 3], side: i8) -> Option<(usize, f64)> {
+    let largest = largest_axis(normal.map(f64::abs));
     [largest, 0, 1, 2].into_iter().find_map(|axis| match side_of(corners, GzCoord::AXES[axis]) {
         0 => None,
         sign => Some((axis, f64::from(side * sign))),
     })
 }
 
-/// The weights moved at least a few roundings of the point away from each edge.
-///
-/// `reach` is the greatest coordinate of the corners: the sum that forms the point rounds in units of its largest addend, also where the
-/// point itself is near the origin of space.
-fn pulled_in(corners: &[GzCoord; 3], weights: [f64; 3], reach: f64, double_area: f64) -> [f64; 3] {
-    let [a, b, c] = corners.map(|p| p.as_dvec3());
-    // The height over an edge is twice the area by its length; a weight of 1 is the whole height.
-    let edges = [c - b, a - c, b - a].map(DVec3::length);
-    let pulled: [f64; 3] = std::array::from_fn(|k| {
-        let least = (16.0 * U * reach * edges[k] / double_area).clamp(LEAST_WEIGHT, 1.0 / 3.0);
-        weights[k].max(least)
-    });
-    let sum = pulled[0] + pulled[1] + pulled[2];
-    pulled.map(|w| w / sum)
-}
-
-/// 2^-44, a few roundings of a weight.
-const LEAST_WEIGHT: f64 = 1.0 / (1u64 << 44) as f64;
-
-/// Whether `point` is strictly on the given side of the plane.
-fn is_beyond(corners: &[GzCoord; 3], point: DVec3, side: i8) -> bool {
-    let coord = |p: DVec3| robust::Coord3D { x: p.x, y: p.y, z: p.z };
-    let [a, b, c] = corners.map(|p| coord(p.as_dvec3()));
-    // Positive where the winding's normal points away from the point.
-    let volume = robust::orient3d(a, b, c, coord(point));
-    if side > 0 { volume < 0.0 } else { volume > 0.0 }
-}
-
-/// Coordinates too small for a ray's origin become 0.
-fn without_tiny(p: DVec3) -> DVec3 {
-    DVec3::from_array(p.to_array().map(|x| if x.abs() < LEAST_ORIGIN { 0.0 } else { x }))
-}
-
-fn largest_axis(v: DVec3) -> usize {
-    let [x, y, z] = v.abs().to_array();
+fn largest_axis([x, y, z]: [f64; 3]) -> usize {
     if x >= y && x >= z {
         0
     } else if y >= z {
@@ -112,6 +70,14 @@ fn largest_axis(v: DVec3) -> usize {
 mod tests {
     use super::*;
     use crate::{BruteForce, GzRay, RayQuery, TriBuffer};
+
+    /// Whether `point` is strictly on the given side of the plane.
+    fn is_beyond(corners: &[GzCoord; 3], point: DVec3, side: i8) -> bool {
+        let coord = |p: DVec3| robust::Coord3D { x: p.x, y: p.y, z: p.z };
+        let [a, b, c] = corners.map(|p| coord(p.as_dvec3()));
+        // Positive where the winding's normal points away from the point.
+        robust::orient3d(a, b, c, coord(point)) * f64::from(side) < 0.0
+    }
 
     fn square(tilt: f32, offset: f32) -> [GzCoord; 4] {
         [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]

@@ -1,7 +1,7 @@
 //! Other ways to leave a surface, for comparison with the exact one.
 
 use crate::leave::leave_surface;
-use crate::{GzCoord, GzRay};
+use crate::{GzCoord, GzRay, SurfacePoint};
 use glam::DVec3;
 
 /// Where shadow, mirror and glass rays start, and what they do not see.
@@ -38,20 +38,39 @@ impl LeavePolicy {
     ///
     /// Whoever asks about it has to mind [`Self::skips_source`].
     pub fn leave(self, corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoord) -> Option<GzRay> {
+        match self {
+            Self::Exact => Some(self.from(leave_surface(corners, weights, direction)?, direction)),
+            _ => Some(self.from(self.cured(corners, weights, direction), direction)),
+        }
+    }
+
+    /// The same from a point of the triangle whose places to leave from are known, if the rule is the exact one. `side` is where
+    /// `direction` leads, by [`crate::side_of`].
+    pub fn leave_at(self, corners: &[GzCoord; 3], point: &SurfacePoint, direction: GzCoord, side: i8) -> Option<GzRay> {
+        match self {
+            Self::Exact => Some(self.from(point.start(side)?, direction)),
+            _ => Some(self.from(self.cured(corners, point.weights, direction), direction)),
+        }
+    }
+
+    fn from(self, origin: DVec3, direction: GzCoord) -> GzRay {
+        GzRay { tmin: self.tmin(), ..GzRay::from_f64(origin, direction) }
+    }
+
+    /// Where rays start by the rules that are no proof.
+    fn cured(self, corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoord) -> DVec3 {
+        let (point, error) = rounded_point(corners, weights);
         // The least f32 is 2^-149, so that no origin is too small for a ray.
-        let origin: DVec3 = match self {
-            Self::Exact => leave_surface(corners, weights, direction)?,
-            Self::Bare | Self::Identity | Self::Epsilon(_) => rounded_point(corners, weights).0.as_dvec3(),
-            Self::WaechterBinder => {
-                let (point, normal) = (rounded_point(corners, weights).0, leaving_normal(corners, direction));
-                by_integer_steps(point, normal).as_dvec3()
-            }
-            Self::ErrorBound => {
-                let ((point, error), normal) = (rounded_point(corners, weights), leaving_normal(corners, direction));
-                out_of_error_box(point, error, normal).as_dvec3()
-            }
-        };
-        Some(GzRay { tmin: self.tmin(), ..GzRay::from_f64(origin, direction) })
+        match self {
+            Self::WaechterBinder => by_integer_steps(point, leaving_normal(corners, direction)).as_dvec3(),
+            Self::ErrorBound => out_of_error_box(point, error, leaving_normal(corners, direction)).as_dvec3(),
+            Self::Exact | Self::Bare | Self::Identity | Self::Epsilon(_) => point.as_dvec3(),
+        }
+    }
+
+    /// Whether rays start from the places of a [`SurfacePoint`].
+    pub fn needs_starts(self) -> bool {
+        self == Self::Exact
     }
 
     /// Hits of leaving rays at or before this t do not count.

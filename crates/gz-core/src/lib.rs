@@ -33,6 +33,7 @@ mod query;
 mod ray;
 pub mod simd;
 mod stack;
+mod surface;
 mod tile;
 mod tri;
 
@@ -52,5 +53,6 @@ pub use query::{ClassMask, PerRay, RayBatch, RayQuery, Targets};
 pub use ray::GzRay;
 pub use simd::{SimdLevel, with_default_float_control};
 pub use stack::{MatrixStack, StackError};
+pub use surface::SurfacePoint;
 pub use tile::{Tile, TileGrid};
 pub use tri::{Attributes, GzTri, MaterialId, TriBuffer, TriClass, TriError};

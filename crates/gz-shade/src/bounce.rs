@@ -1,6 +1,6 @@
 //! Where a ray goes on at a mirror or at glass, and how much each branch counts.
 
-use crate::interpolate::{HitPoint, normal, outside};
+use crate::interpolate::{normal, outside};
 use crate::media::{Media, MediaStacks};
 use crate::optics::reflectance;
 use crate::reflection::reflect;
@@ -8,7 +8,7 @@ use crate::refraction::refract;
 use crate::tree::{Node, RayKind};
 use crate::{FrameStats, GlassBlend, MaterialKind, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
-use gz_core::{GzColor, GzCoord, GzRay, side_of};
+use gz_core::{GzColor, GzCoord, GzRay, SurfacePoint, side_of};
 
 /// Branches that weigh less than this of their pixel, in their strongest channel, end. It is a sixteenth of a step of a 12-bit
 /// picture and less than a hundredth of one of an 8-bit picture, as long as what the branch sees is not much brighter than 1.
@@ -35,8 +35,9 @@ pub(crate) struct Bouncer<'a> {
 }
 
 /// How a ray meets a surface.
-struct Meeting {
-    at: HitPoint,
+struct Meeting<'p> {
+    at: &'p SurfacePoint,
+    corners: &'p [GzCoord; 3],
     /// Direction of the ray, at length 1.
     d: DVec3,
     /// Shading normal at length 1, turned against the ray: d.n <= 0.
@@ -47,7 +48,7 @@ struct Meeting {
     entering: bool,
 }
 
-impl Meeting {
+impl Meeting<'_> {
     /// Cosine between the normal and the incoming ray, in [0, 1].
     fn cos(&self) -> f64 {
         (-self.d.dot(self.n)).clamp(0.0, 1.0)
@@ -67,22 +68,22 @@ impl Meeting {
     }
 }
 
-impl Bouncer<'_> {
-    /// Adds the branches that go on from node `id`, a hit, and returns what its local colour is multiplied by.
+impl<'a> Bouncer<'a> {
+    /// Adds the branches that go on from node `id`, which hits at `point`, and returns what its local colour is multiplied by.
     ///
     /// At the depth limit a hit has no branches and keeps its local colour whole.
-    pub(crate) fn bounce(&mut self, id: u32, node: &Node) -> f32 {
+    pub(crate) fn bounce(&mut self, id: u32, node: &Node, point: &'a SurfacePoint) -> f32 {
         match self.scene.material(node.hit.tri).kind {
-            MaterialKind::Mirror { ior } if self.needs.mirrors => self.mirror(id, node, ior),
-            MaterialKind::Glass { ior } if self.needs.glass => self.glass(id, node, ior),
+            MaterialKind::Mirror { ior } if self.needs.mirrors => self.mirror(id, node, point, ior),
+            MaterialKind::Glass { ior } if self.needs.glass => self.glass(id, node, point, ior),
             _ => 1.0,
         }
     }
 
-    fn mirror(&mut self, id: u32, node: &Node, ior: Option<f32>) -> f32 {
+    fn mirror(&mut self, id: u32, node: &Node, point: &'a SurfacePoint, ior: Option<f32>) -> f32 {
         let rules = &self.scene.rules;
         let mistaken = self.last_light(node).filter(|_| rules.reflect_last_light);
-        let meeting = self.meet(node, mistaken.unwrap_or(node.ray.direction));
+        let meeting = self.meet(node, point, mistaken);
         // 1. The reflected share: all of it at an ideal mirror and where the paper's program does not ask.
         let share = match (rules.mirror_blend, ior) {
             (MirrorBlend::Physical, Some(ior)) => {
@@ -97,8 +98,8 @@ impl Bouncer<'_> {
         }
         // 2. The direction.
         let direction = match mistaken {
-            Some(_) => Some(meeting.mistaken_reflection()),
-            None => self.on_side(&meeting, reflect(meeting.d, meeting.n), -meeting.to_side),
+            Some(_) => Some(meeting.mistaken_reflection()).map(|d| (d, side_of(meeting.corners, d))),
+            None => self.on_side(node, &meeting, reflect(meeting.d, meeting.n), -meeting.to_side),
         };
         let branch = Branch { parent: id, kind: RayKind::Mirror, ray: node.ray, factor, media: node.media };
         let goes_on = self.emit(node, &meeting, direction, branch);
@@ -110,9 +111,9 @@ impl Bouncer<'_> {
         }
     }
 
-    fn glass(&mut self, id: u32, node: &Node, ior: f32) -> f32 {
+    fn glass(&mut self, id: u32, node: &Node, point: &'a SurfacePoint, ior: f32) -> f32 {
         let rules = &self.scene.rules;
-        let meeting = self.meet(node, node.ray.direction);
+        let meeting = self.meet(node, point, None);
         // 1. From which medium to which, and how much is reflected.
         let (eta, after, unmatched, share) = match rules.glass_blend {
             GlassBlend::Physical => {
@@ -133,31 +134,31 @@ impl Bouncer<'_> {
         // 2. The reflected branch stays in its medium, the refracted one changes it.
         let branch = Branch { parent: id, kind: RayKind::Glass, ray: node.ray, factor: GzColor::splat(share), media: node.media };
         if share > 0.0 {
-            let direction = self.on_side(&meeting, reflect(meeting.d, meeting.n), -meeting.to_side);
+            let direction = self.on_side(node, &meeting, reflect(meeting.d, meeting.n), -meeting.to_side);
             self.emit(node, &meeting, direction, branch);
         }
         if let Some(refracted) = refracted {
-            let direction = self.on_side(&meeting, refracted, meeting.to_side);
+            let direction = self.on_side(node, &meeting, refracted, meeting.to_side);
             self.emit(node, &meeting, direction, Branch { factor: through, media: after, ..branch });
         }
         1.0
     }
 
-    /// The geometry of a hit as mirrors and glass see it, by a ray along `direction`.
+    /// The geometry of a hit at `at` as mirrors and glass see it: by the node's ray, or one along another direction that it is mistaken for.
     ///
     /// With geometric sides the triangle itself says where the ray comes from and whether that is outside; the shading normal, taken
     /// on that side, only bends directions. Where it leans away from the ray all the same (at the silhouette of a coarse mesh) it is
     /// brought back to where the ray grazes it: there all is reflected, as it is in the limit.
-    fn meet(&self, node: &Node, direction: GzCoord) -> Meeting {
+    fn meet(&self, node: &Node, at: &'a SurfacePoint, mistaken: Option<GzCoord>) -> Meeting<'a> {
         let tris = &self.scene.tris;
         let tri = node.hit.tri;
-        let at = HitPoint::of(tris, tri, &node.ray);
-        let d = direction.as_dvec3().normalize_or_zero();
+        let corners = tris.position(tri);
+        let d = mistaken.unwrap_or(node.ray.direction).as_dvec3().normalize_or_zero();
         let n = normal(tris, self.needs, tri, self.scene.material(tri).interpolate, at.weights);
-        let to_side = side_of(&at.corners, direction);
+        let to_side = mistaken.map_or(at.to_side, |direction| side_of(corners, direction));
         if !self.scene.rules.geometric_sides {
             let entering = d.dot(n) < 0.0;
-            return Meeting { at, d, n: if entering { n } else { -n }, to_side, entering };
+            return Meeting { at, corners, d, n: if entering { n } else { -n }, to_side, entering };
         }
         let entering = outside(tris, self.needs, tri) != to_side;
         let n = if entering { n } else { -n };
@@ -167,19 +168,21 @@ impl Bouncer<'_> {
         } else {
             (n - d * slope).try_normalize().unwrap_or_else(|| tris.face_normal(tri) * -f64::from(to_side))
         };
-        Meeting { at, d, n, to_side, entering }
+        Meeting { at, corners, d, n, to_side, entering }
     }
 
     /// `direction` in f32 if it leads to `side` of the triangle; else mirrored at the triangle's plane and counted, which is the
-    /// same direction in the limit. `None` if that lies in the plane. Without geometric sides any direction will do.
-    fn on_side(&mut self, meeting: &Meeting, direction: DVec3, side: i8) -> Option<GzCoord> {
+    /// same direction in the limit. `None` if that lies in the plane. Without geometric sides any direction will do. Beside it the
+    /// side that it leads to.
+    fn on_side(&mut self, node: &Node, meeting: &Meeting<'_>, direction: DVec3, side: i8) -> Option<(GzCoord, i8)> {
         let rounded = direction.as_vec3();
-        if !self.scene.rules.geometric_sides || side_of(&meeting.at.corners, rounded) == side {
-            return Some(rounded);
+        let leads_to = side_of(meeting.corners, rounded);
+        if !self.scene.rules.geometric_sides || leads_to == side {
+            return Some((rounded, leads_to));
         }
         self.stats.below_surface += 1;
-        let mirrored = reflect(direction, self.scene.tris.face_normal(meeting.at.tri)).as_vec3();
-        (side_of(&meeting.at.corners, mirrored) == side).then_some(mirrored)
+        let mirrored = reflect(direction, self.scene.tris.face_normal(node.hit.tri)).as_vec3();
+        (side_of(meeting.corners, mirrored) == side).then_some((mirrored, side))
     }
 
     /// The direction to the last light, which the mistake behind the paper's refraction figure takes for the ray's own.
@@ -187,8 +190,9 @@ impl Bouncer<'_> {
         self.scene.lights.last().map(|light| light.arrive(node.ray.at(node.hit.t)).direction)
     }
 
-    /// Adds `branch` along `direction` unless it weighs too little or has no way to go; returns whether it was added.
-    fn emit(&mut self, node: &Node, meeting: &Meeting, direction: Option<GzCoord>, branch: Branch) -> bool {
+    /// Adds `branch` along `direction`, with the side that it leads to, unless it weighs too little or has no way to go; returns whether it
+    /// was added.
+    fn emit(&mut self, node: &Node, meeting: &Meeting<'_>, direction: Option<(GzCoord, i8)>, branch: Branch) -> bool {
         let weight = (node.weight * branch.factor).max_element();
         if weight < LEAST_WEIGHT {
             self.stats.weak_branches += u64::from(weight > 0.0);
@@ -196,7 +200,7 @@ impl Bouncer<'_> {
             return false;
         }
         let policy = self.scene.rules.leave;
-        let Some(ray) = direction.and_then(|d| policy.leave(&meeting.at.corners, meeting.at.weights, d)) else {
+        let Some(ray) = direction.and_then(|(d, side)| policy.leave_at(meeting.corners, meeting.at, d, side)) else {
             self.stats.absorbed += 1;
             return false;
         };

@@ -5,7 +5,7 @@ use crate::local::{Item, Lit, casts_shadow_rays};
 use crate::shadow::{ShadowRay, look};
 use crate::tree::{NO_PARENT, Node, RayKind};
 use crate::{FrameStats, Scene, SceneNeeds, Surface};
-use gz_core::{GzColor, GzRay, Hit, RayQuery, Tile};
+use gz_core::{GzColor, GzRay, Hit, RayQuery, SurfacePoint, Tile};
 
 /// Why a light adds to a hit what it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,8 +79,9 @@ pub fn explain_pixel(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, i: 
     for (sample, it) in samples_of(scene, needs).iter().enumerate() {
         trace_and_shade(scene, needs, query, &tile, it.offset, &mut scratch, &mut stats);
         let first = list.len();
-        list.extend(scratch.nodes().iter().map(|node| {
-            let (ambient, lights) = parts(scene, needs, query, node);
+        let tree = scratch.tree();
+        list.extend(tree.nodes.iter().zip(&tree.points).map(|(node, point)| {
+            let (ambient, lights) = parts(scene, needs, query, node, point);
             ExplainNode {
                 sample,
                 sample_weight: it.weight,
@@ -102,12 +103,12 @@ pub fn explain_pixel(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, i: 
 }
 
 /// The parts of the local colour of `node`: by ambient light, and by each light.
-fn parts(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, node: &Node) -> (GzColor, Vec<LightPart>) {
+fn parts(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, node: &Node, point: &SurfacePoint) -> (GzColor, Vec<LightPart>) {
     let shaded = node.hit.is_hit() && node.keep != 0.0 && scene.material(node.hit.tri).surface == Surface::Shaded;
     if !shaded {
         return (GzColor::ZERO, Vec::new());
     }
-    let item = Item::of(scene, needs, 0, node);
+    let item = Item::of(scene, needs, 0, node, point);
     let part = |(light, it)| {
         let (color, sight) = match item.lit_by(scene, needs, it, casts_shadow_rays(scene, needs)) {
             Lit::Behind => (GzColor::ZERO, Sight::Behind),

@@ -41,9 +41,9 @@ pub struct ShadeScratch {
 }
 
 impl ShadeScratch {
-    /// The nodes of the pixels and the sample worked on last: of all, if the tile is a pixel.
-    pub(crate) fn nodes(&self) -> &[Node] {
-        &self.tree.nodes
+    /// The rays of the pixels and the sample worked on last: of all, if the tile is a pixel.
+    pub(crate) fn tree(&self) -> &Tree {
+        &self.tree
     }
 }
 
@@ -148,6 +148,7 @@ pub(crate) fn trace_and_shade(
         for (id, (&(i, j), pixel)) in places[part.clone()].iter().zip(&pixels[part.clone()]).enumerate() {
             tree.nodes.push(Node::root(id as u32, scene.camera.ray(i, j, offset), pixel.hit));
         }
+        tree.meet(scene);
         // Mirror and glass rays: the branches.
         let mut counted = FrameStats::default();
         if tree.grow(scene, needs, query, &mut counted) == Err(TooLarge) {
@@ -156,7 +157,7 @@ pub(crate) fn trace_and_shade(
         }
         // What each ray sees by itself.
         tree.show_background(scene, scene.up());
-        lighting.shade(scene, needs, query, &mut tree.nodes, &mut counted);
+        lighting.shade(scene, needs, query, tree, &mut counted);
         // What that makes together.
         tree.combine(scene.rules.clamp_levels);
         shaded.extend(tree.nodes[..part.len()].iter().map(|root| root.color));

@@ -2,31 +2,7 @@
 
 use crate::{Interpolate, SceneNeeds};
 use glam::DVec3;
-use gz_core::{GzColor, GzCoord, GzRay, GzTextureIndex, TriBuffer, TriId, kernel, side_of};
-
-/// A hit with its geometry in f64.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct HitPoint {
-    /// The triangle.
-    pub(crate) tri: TriId,
-    /// Its corners in trace space.
-    pub(crate) corners: [GzCoord; 3],
-    /// Weights of the corners at the hit, in f64 from the ray itself: [`gz_core::Hit`] has them rounded to f32, too coarse to start a
-    /// ray from.
-    pub(crate) weights: [f64; 3],
-    /// The point, trace space.
-    pub(crate) point: DVec3,
-}
-
-impl HitPoint {
-    /// Where `ray` meets triangle `tri`, which it is known to hit.
-    pub(crate) fn of(tris: &TriBuffer, tri: TriId, ray: &GzRay) -> Self {
-        let corners = *tris.position(tri);
-        let weights = kernel::hit_weights(ray, &corners);
-        let [a, b, c] = corners.map(|p| p.as_dvec3());
-        Self { tri, corners, weights, point: a * weights[0] + b * weights[1] + c * weights[2] }
-    }
-}
+use gz_core::{GzColor, GzCoord, GzTextureIndex, TriBuffer, TriId, side_of};
 
 /// The side of a triangle that is outside: 1 where the normal of the winding points, -1 on the other.
 ///
@@ -132,12 +108,5 @@ mod tests {
         assert_eq!(normal(&tris, SceneNeeds::ALL, 0, Interpolate::Phong, [0.5, 0.5, 0.0]), DVec3::Z);
         let none = buffer([GzCoord::ZERO; 3]);
         assert_eq!(normals_at_corners(&none, SceneNeeds::ALL, 0), [DVec3::Z; 3]);
-    }
-
-    #[test]
-    fn a_hit_point_has_the_weights_of_its_ray() {
-        let ray = GzRay::new(GzCoord::new(0.25, 0.5, -3.0), GzCoord::Z);
-        let at = HitPoint::of(&buffer([GzCoord::Z; 3]), 0, &ray);
-        assert_eq!((at.weights, at.point), ([0.25, 0.25, 0.5], DVec3::new(0.25, 0.5, 0.0)));
     }
 }

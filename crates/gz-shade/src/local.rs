@@ -1,22 +1,24 @@
 //! Local colours: the shading equation at every hit of a tile that counts, light by light.
 
-use crate::interpolate::{self, HitPoint};
+use crate::interpolate;
 use crate::phong::{Coefficients, light_share};
 use crate::shadow::{ShadowRay, ShadowRays, Shadows};
-use crate::tree::Node;
+use crate::tree::{Node, Tree};
 use crate::{Eye, FrameStats, GzLight, Interpolate, LightKind, Material, Scene, SceneNeeds, ShadowRule, Surface, Texture};
 use glam::DVec3;
-use gz_core::{GzColor, GzRay, RayQuery, side_of};
+use gz_core::{GzColor, GzCoord, GzRay, RayQuery, SurfacePoint, TriId, side_of};
 
 /// A hit that is shaded.
 #[derive(Debug)]
 pub(crate) struct Item {
     node: u32,
-    pub(crate) at: HitPoint,
+    tri: TriId,
+    corners: [GzCoord; 3],
+    at: SurfacePoint,
     /// Weights for colours and normals: linear in screen space where the rules say so.
     weights: [f64; 3],
     /// Shaded at the corners instead of at the hit.
-    corners: bool,
+    at_corners: bool,
     /// Unit normal at the hit; unused when shaded at the corners.
     n: DVec3,
     /// To the viewer.
@@ -59,21 +61,22 @@ pub(crate) struct Lighting {
 }
 
 impl Lighting {
-    /// Gives every hit among `nodes` whose local colour counts that colour. The shadow rays of one light are one batch.
+    /// Gives every hit of `tree` whose local colour counts that colour. The shadow rays of one light are one batch.
     pub(crate) fn shade(
         &mut self,
         scene: &Scene,
         needs: SceneNeeds,
         query: &dyn RayQuery,
-        nodes: &mut [Node],
+        tree: &mut Tree,
         stats: &mut FrameStats,
     ) {
         // 1. Ambient light, and what the lights will need.
         self.items.clear();
-        for (id, node) in nodes.iter_mut().enumerate().filter(|(_, node)| node.hit.is_hit() && node.keep != 0.0) {
+        let counting = |(_, (node, _)): &(usize, (&mut Node, _))| node.hit.is_hit() && node.keep != 0.0;
+        for (id, (node, point)) in tree.nodes.iter_mut().zip(&tree.points).enumerate().filter(counting) {
             match scene.material(node.hit.tri).surface {
                 Surface::AppColor => node.local = scene.tris.color(node.hit.tri).unwrap_or(GzColor::ONE),
-                Surface::Shaded => self.items.push(Item::of(scene, needs, id as u32, node)),
+                Surface::Shaded => self.items.push(Item::of(scene, needs, id as u32, node, point)),
             }
         }
         // 2. Light by light.
@@ -93,7 +96,7 @@ impl Lighting {
         }
         // 3. The sums are the colours.
         for item in &self.items {
-            nodes[item.node as usize].local = item.color(scene.rules.clamp_levels);
+            tree.nodes[item.node as usize].local = item.color(scene.rules.clamp_levels);
         }
     }
 
@@ -124,29 +127,29 @@ pub(crate) fn casts_shadow_rays(scene: &Scene, needs: SceneNeeds) -> bool {
 }
 
 impl Item {
-    /// The hit of `node` before any light.
-    pub(crate) fn of(scene: &Scene, needs: SceneNeeds, id: u32, node: &Node) -> Self {
+    /// The hit of `node`, at `point`, before any light.
+    pub(crate) fn of(scene: &Scene, needs: SceneNeeds, id: u32, node: &Node, point: &SurfacePoint) -> Self {
         let (tris, rules, tri) = (&scene.tris, &scene.rules, node.hit.tri);
         let material = scene.material(tri);
-        let at = HitPoint::of(tris, tri, &node.ray);
+        let (at, corners) = (*point, *tris.position(tri));
         let weights = if rules.screen_interpolation && node.depth == 0 {
-            scene.camera.screen_weights(&at.corners, at.weights)
+            scene.camera.screen_weights(&corners, at.weights)
         } else {
             at.weights
         };
-        let corners = needs.gouraud && material.interpolate == Interpolate::Gouraud;
-        let n = if corners { DVec3::ZERO } else { interpolate::normal(tris, needs, tri, material.interpolate, weights) };
+        let at_corners = needs.gouraud && material.interpolate == Interpolate::Gouraud;
+        let n = if at_corners { DVec3::ZERO } else { interpolate::normal(tris, needs, tri, material.interpolate, weights) };
         let e = match rules.eye {
             Eye::Ray => -node.ray.direction.as_dvec3(),
             Eye::Fixed => DVec3::NEG_Z,
         };
         let geometric = rules.geometric_sides && scene.has_secondary_rays();
-        let viewer = if geometric { -side_of(&at.corners, node.ray.direction) } else { 0 };
+        let viewer = if geometric { -at.to_side } else { 0 };
 
         let mut k = Coefficients { ka: material.ka, kd: material.kd, ks: material.ks, power: material.power };
         let mut texture = GzColor::ONE;
         if let Some(color) = texture_of(scene, needs, material).map(|it| it.color(interpolate::uv(tris, tri, at.weights))) {
-            if corners {
+            if at_corners {
                 // Corners are shaded white; the texture multiplies highlights too.
                 k = Coefficients { ka: GzColor::ONE, kd: GzColor::ONE, ks: GzColor::ONE, ..k };
                 texture = color;
@@ -155,19 +158,21 @@ impl Item {
                 k = Coefficients { ka: color, kd: color, ..k };
             }
         }
-        Self { node: id, at, weights, corners, n, e, viewer, k, texture, sum: [k.ka * scene.ambient; 3] }
+        let sum = [k.ka * scene.ambient; 3];
+        Self { node: id, tri, corners, at, weights, at_corners, n, e, viewer, k, texture, sum }
     }
 
     /// How `light` meets it, and its shadow ray when they are `casting`.
     pub(crate) fn lit_by(&self, scene: &Scene, needs: SceneNeeds, light: &GzLight, casting: bool) -> Lit {
         let arrival = light.arrive(self.at.point);
-        if self.viewer != 0 && side_of(&self.at.corners, arrival.direction) != self.viewer {
+        let side = if self.viewer != 0 || casting { side_of(&self.corners, arrival.direction) } else { 0 };
+        if self.viewer != 0 && side != self.viewer {
             return Lit::Behind;
         }
-        let color = if self.corners {
-            let normals = interpolate::normals_at_corners(&scene.tris, needs, self.at.tri);
+        let color = if self.at_corners {
+            let normals = interpolate::normals_at_corners(&scene.tris, needs, self.tri);
             std::array::from_fn(|corner| {
-                let arrival = light.arrive(self.at.corners[corner].as_dvec3());
+                let arrival = light.arrive(self.corners[corner].as_dvec3());
                 light_share(&self.k, normals[corner], arrival.to_light, self.e) * arrival.color
             })
         } else {
@@ -179,9 +184,9 @@ impl Item {
         if !casting {
             return Lit::Adds { color, start: None };
         }
-        match scene.rules.leave.leave(&self.at.corners, self.at.weights, arrival.direction) {
+        match scene.rules.leave.leave_at(&self.corners, &self.at, arrival.direction, side) {
             Some(GzRay { origin, direction, .. }) => {
-                Lit::Adds { color, start: Some(ShadowRay { origin, direction, tmax: arrival.tmax, leaves: self.at.tri }) }
+                Lit::Adds { color, start: Some(ShadowRay { origin, direction, tmax: arrival.tmax, leaves: self.tri }) }
             }
             None => Lit::InPlane,
         }
@@ -200,7 +205,7 @@ impl Item {
 
     /// What colours at the hit or at each corner are at the hit.
     pub(crate) fn at_hit(&self, color: [GzColor; 3]) -> GzColor {
-        if self.corners { interpolate::color(color, self.weights) * self.texture } else { color[0] }
+        if self.at_corners { interpolate::color(color, self.weights) * self.texture } else { color[0] }
     }
 }
 

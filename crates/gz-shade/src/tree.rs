@@ -6,7 +6,7 @@ use crate::media::{Media, MediaStacks};
 use crate::source::{leaving, skip_sources};
 use crate::{FrameStats, GlassBlend, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
-use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TriId};
+use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, SimdLevel, SurfacePoint, TriId};
 
 /// What kind of ray it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +78,8 @@ impl Node {
 #[derive(Debug, Default)]
 pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
+    /// Where each node's ray hits.
+    pub(crate) points: Vec<SurfacePoint>,
     media: MediaStacks,
     branches: Vec<Branch>,
     crowd: Crowd,
@@ -91,7 +93,15 @@ impl Tree {
     /// Forgets all nodes.
     pub(crate) fn clear(&mut self) {
         self.nodes.clear();
+        self.points.clear();
         self.media.clear();
+    }
+
+    /// Finds where the rays of the nodes added last hit: of all that have no point yet.
+    pub(crate) fn meet(&mut self, scene: &Scene) {
+        let hits = self.nodes[self.points.len()..].iter().map(|node| node.hit.is_hit().then_some((node.ray, node.hit.tri)));
+        let leaving = scene.rules.leave.needs_starts() && scene.has_secondary_rays();
+        SurfacePoint::of_hits(&scene.tris, hits, leaving, SimdLevel::best(), &mut self.points);
     }
 
     /// Follows mirror and glass rays, level by level, from the roots; each kind of a level is one batch. With a depth limit of 0 no
@@ -122,7 +132,7 @@ impl Tree {
             for id in level.clone() {
                 let node = self.nodes[id];
                 if node.hit.is_hit() {
-                    self.nodes[id].keep = bouncer.bounce(id as u32, &node);
+                    self.nodes[id].keep = bouncer.bounce(id as u32, &node, &self.points[id]);
                 }
             }
             // 2. The heaviest of those rays are the next level.
@@ -182,6 +192,7 @@ impl Tree {
                 self.nodes[parent].keep = 1.0;
             }
         }
+        self.meet(scene);
         match kind {
             RayKind::Mirror => stats.mirror_rays += count as u64,
             _ => stats.glass_rays += count as u64,

@@ -5,10 +5,12 @@
 //! the same steps for one hit and for eight, so that the bits are the same.
 
 use super::exact::ExactHit;
+use super::leaving::combine;
 use super::rung::Rung;
 use super::solution::{Bounded, Solution};
 use crate::simd::{Doubles, EightDoubles, Lanes, Simd, nine, numbers_of};
 use crate::{GzCoord, GzRay, Hit, TriId};
+use glam::DVec3;
 
 /// What f64 says of hits: each number, and where it is not settled and the exact stage has it.
 struct InDoubles<F> {
@@ -138,7 +140,7 @@ fn alone(ray: &GzRay, tri: TriId, corners: &[GzCoord; 3]) -> Hit {
 }
 
 #[inline(always)]
-fn widen3<S: Simd>(rows: [S::Eight; 3]) -> [S::Doubles; 3] {
+pub(super) fn widen3<S: Simd>(rows: [S::Eight; 3]) -> [S::Doubles; 3] {
     [S::widen(rows[0]), S::widen(rows[1]), S::widen(rows[2])]
 }
 
@@ -147,15 +149,38 @@ const HALF_SMALLEST: f64 = 1.0 / (1u64 << 41) as f64;
 /// 2^-36.
 const WEIGHT_ERROR: f64 = 1.0 / (1u64 << 36) as f64;
 
+/// Weights of the three corners as f64 has them, cut to [0, 1].
+pub(super) struct NearWeights<F> {
+    pub(super) weights: [F; 3],
+    /// They mean something where this is above 0 and `error` is at most `most`.
+    pub(super) certainty: F,
+    pub(super) error: F,
+    pub(super) most: F,
+}
+
+impl<F: Doubles> NearWeights<F> {
+    #[inline(always)]
+    pub(super) fn of(solution: &Solution<F>) -> Self {
+        let ([v, w], error) = solution.weights(solution.inverse());
+        let u = F::splat(1.0).minus(v).minus(w);
+        let weights = [cut(u), cut(v), cut(w)];
+        Self { weights, certainty: solution.certainty(), error, most: F::splat(WEIGHT_ERROR) }
+    }
+}
+
 /// Weights of the three corners where the line of `ray` meets the triangle, in f64.
 ///
 /// Each is in [0, 1] and within 2^-36 of the true one; they sum to 1 up to rounding. Meaningful for a ray that hits the triangle; for
 /// one that does not, (1, 0, 0).
 pub fn hit_weights(ray: &GzRay, corners: &[GzCoord; 3]) -> [f64; 3] {
-    let solution = Solution::of_one(ray, corners);
-    let ([v, w], error) = solution.weights(solution.inverse());
-    if solution.certainty() > 0.0 && error <= WEIGHT_ERROR {
-        return [1.0 - v - w, v, w].map(|x| x.clamp(0.0, 1.0));
+    let near = NearWeights::of(&Solution::of_one(ray, corners));
+    if near.certainty > 0.0 && near.error <= near.most {
+        return near.weights;
     }
     ExactHit::of(ray, corners).map_or([1.0, 0.0, 0.0], |exact| exact.weights_near())
+}
+
+/// The point of a triangle with these weights.
+pub(crate) fn point_at(corners: &[GzCoord; 3], weights: [f64; 3]) -> DVec3 {
+    combine(&corners.map(|p| p.as_dvec3().to_array()), weights).into()
 }

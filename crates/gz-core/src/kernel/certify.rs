@@ -1,8 +1,8 @@
 //! The f64 test with its error bound: it answers when the bound proves the answer, else it says so.
 
+use super::height::Plane;
 use super::solution::{Bounded, Solution};
 use crate::{GzCoord, GzRay};
-use glam::DVec3;
 
 impl Bounded<f64> {
     /// -1 or 1 when proved, 0 when not.
@@ -83,11 +83,8 @@ pub(crate) fn certify(ray: &GzRay, corners: &[GzCoord; 3]) -> Verdict {
 }
 
 /// Whether t = M / D is above 0, exactly, for D of the sign `d_sign`.
-#[cold]
 fn is_ahead(ray: &GzRay, corners: &[GzCoord; 3], d_sign: i32) -> bool {
-    let coord = |p: DVec3| robust::Coord3D { x: p.x, y: p.y, z: p.z };
-    let [a, b, c] = corners.map(|p| coord(p.as_dvec3()));
-    // The predicate's determinant of a - o, b - o, c - o is M; its sign is exact.
-    let m = robust::orient3d(a, b, c, coord(ray.origin));
-    m * f64::from(d_sign) > 0.0
+    // M is how far the plane lies ahead along the normal: the height of the origin, with the other sign.
+    let plane = Plane::of(&corners.map(|p| p.as_dvec3().to_array()));
+    plane.side(corners, ray.origin.to_array()) * d_sign < 0
 }

@@ -1,0 +1,148 @@
+//! Where rays have hit triangles and go on from, eight hits at a time.
+// Axes and lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
+use super::answer::{NearWeights, corners_of, widen3};
+use super::leaving::{Leaving, combine};
+use super::solution::{Bounded, Solution};
+use crate::ray::LEAST_ORIGIN;
+use crate::simd::{Doubles, EightDoubles, Lanes, Simd, Task};
+use crate::surface::SurfacePoint;
+use crate::{GzCoord, GzRay};
+
+/// The points where rays have hit triangles, as [`SurfacePoint::of`] has them; with places to leave from if `leaving`.
+pub(crate) struct EightPoints<'p> {
+    pub(crate) rays: &'p [GzRay; 8],
+    pub(crate) corners: [&'p [GzCoord; 3]; 8],
+    pub(crate) leaving: bool,
+}
+
+/// The most steps that are taken side by side. The first gets off the plane, as a rule.
+const STEPS: usize = 3;
+
+/// All lanes.
+const ALL: u32 = 0xff;
+
+impl Task for EightPoints<'_> {
+    /// The points, and a bit for each of which f64 has decided all.
+    type Output = ([SurfacePoint; 8], u32);
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> Self::Output {
+        let (mut origins, mut directions) = ([[0.0; 3]; 8], [[0.0; 3]; 8]);
+        for k in 0..8 {
+            origins[k] = self.rays[k].origin.to_array();
+            directions[k] = self.rays[k].direction.to_array();
+        }
+        let origin = <S::Doubles>::unzip3(&origins);
+        let direction = widen3::<S>(<S::Eight>::unzip3(&directions));
+        let [a, b, c] = corners_of::<S>(&self.corners);
+        let corners = [widen3::<S>(a), widen3::<S>(b), widen3::<S>(c)];
+
+        let solution = Solution::of(origin, direction, &corners);
+        let NearWeights { weights, certainty, error, most } = NearWeights::of(&solution);
+        let zero = <S::Doubles>::splat(0.0);
+        let mut settled = !certainty.at_most(zero) & error.at_most(most);
+        let point = combine(&corners, weights);
+        // D is the direction times the normal.
+        let (up, down) = signs(solution.d);
+        settled &= up | down;
+        let mut starts = [point; 2];
+        if self.leaving {
+            let leaving = Leaving::of(&corners, weights);
+            settled &= step_off(&leaving, &mut starts);
+        }
+        (points(arrays(weights), arrays(point), up, [arrays(starts[0]), arrays(starts[1])], self.leaving), settled & ALL)
+    }
+}
+
+/// Where `x` is proved to be above 0, and where below.
+#[inline(always)]
+fn signs<D: EightDoubles>(x: Bounded<D>) -> (u32, u32) {
+    let minus = D::splat(0.0).minus(x.value);
+    // Both ways, as NaN proves nothing.
+    let above = x.error.at_most(x.value) & !x.value.at_most(x.error);
+    let below = x.error.at_most(minus) & !minus.at_most(x.error);
+    (above, below)
+}
+
+/// Points off the plane on either side, first on that of the winding's normal; returns where both are proved.
+#[inline(always)]
+fn step_off<D: EightDoubles>(leaving: &Leaving<D>, starts: &mut [[D; 3]; 2]) -> u32 {
+    let (zero, normal) = (D::splat(0.0), leaving.plane.normal);
+    let sizes = [normal[0].abs(), normal[1].abs(), normal[2].abs()];
+    // The axis of the largest component, and the way on it that leads up.
+    let x = sizes[1].at_most(sizes[0]) & sizes[2].at_most(sizes[0]);
+    let y = !x & sizes[2].at_most(sizes[1]);
+    let along = [x, y, !(x | y)];
+    let (mut steps, mut certain) = ([zero; 3], 0);
+    for axis in 0..3 {
+        certain |= along[axis] & !sizes[axis].at_most(leaving.plane.normal_error(axis));
+        let step = leaving.step.select(zero.at_most(normal[axis]), zero.minus(leaving.step));
+        steps[axis] = step.select(along[axis], zero);
+    }
+
+    let mut first = leaving.point;
+    for axis in 0..3 {
+        first[axis] = without_tiny(first[axis]);
+    }
+    let (above, below, known) = sides(leaving, first);
+    certain &= known;
+    for (side, start) in starts.iter_mut().enumerate() {
+        let (mut point, mut step) = (first, steps);
+        let mut open = !if side == 0 { above } else { below } & ALL;
+        for _ in 0..STEPS {
+            if open == 0 {
+                break;
+            }
+            for axis in 0..3 {
+                let moved = if side == 0 { point[axis].plus(step[axis]) } else { point[axis].minus(step[axis]) };
+                point[axis] = without_tiny(moved).select(open, point[axis]);
+                step[axis] = step[axis].plus(step[axis]);
+            }
+            let (above, below, known) = sides(leaving, point);
+            certain &= known | !open;
+            open &= !if side == 0 { above } else { below };
+        }
+        certain &= !open;
+        *start = point;
+    }
+    certain
+}
+
+/// Where points are above the plane, where below, and where that is certain.
+#[inline(always)]
+fn sides<D: EightDoubles>(leaving: &Leaving<D>, point: [D; 3]) -> (u32, u32, u32) {
+    let height = leaving.plane.height(point);
+    let (above, below) = signs(height);
+    let zero = D::splat(0.0);
+    let within = height.value.abs().at_most(zero) & height.error.at_most(zero);
+    (above, below, above | below | within)
+}
+
+#[inline(always)]
+fn without_tiny<D: EightDoubles>(x: D) -> D {
+    x.select(D::splat(LEAST_ORIGIN).at_most(x.abs()), D::splat(0.0))
+}
+
+#[inline(always)]
+fn arrays<D: EightDoubles>(x: [D; 3]) -> [[f64; 8]; 3] {
+    [x[0].array(), x[1].array(), x[2].array()]
+}
+
+/// Eight points from rows of their numbers.
+#[inline(always)]
+fn points(weights: [[f64; 8]; 3], point: [[f64; 8]; 3], up: u32, starts: [[[f64; 8]; 3]; 2], leaving: bool) -> [SurfacePoint; 8] {
+    let mut points = [SurfacePoint::NOWHERE; 8];
+    for k in 0..8 {
+        points[k].weights = [weights[0][k], weights[1][k], weights[2][k]];
+        points[k].point = [point[0][k], point[1][k], point[2][k]].into();
+        points[k].to_side = if up >> k & 1 != 0 { 1 } else { -1 };
+        if leaving {
+            let [above, below] = starts;
+            points[k].starts =
+                Some([[above[0][k], above[1][k], above[2][k]].into(), [below[0][k], below[1][k], below[2][k]].into()]);
+        }
+    }
+    points
+}
