@@ -1,6 +1,6 @@
 //! The one question that everything above asks, in batches.
 
-use crate::{GzCoord, GzRay, Hit, NO_TRI, TriBuffer, TriClass, TriId};
+use crate::{GzCoord, GzRay, Hit, NO_TRI, Passages, TriBuffer, TriClass, TriId};
 use glam::DVec3;
 
 /// A property of the rays of a batch: the same for all, or one each.
@@ -126,6 +126,12 @@ impl ClassMask {
         Self(self.0 | other.0)
     }
 
+    /// The classes that are not in the set.
+    #[must_use]
+    pub const fn others(self) -> Self {
+        Self(!self.0)
+    }
+
     /// Whether `class` is in the set.
     pub const fn has(self, class: TriClass) -> bool {
         self.0 & (1 << class as u8) != 0
@@ -150,6 +156,12 @@ impl<'t> Targets<'t> {
     #[inline(always)]
     pub fn sees(&self, tri: TriId) -> bool {
         self.all || self.classes.has(self.tris.class(tri))
+    }
+
+    /// Whether a triangle's class is in `classes`.
+    #[inline(always)]
+    pub fn is_of(&self, tri: TriId, classes: ClassMask) -> bool {
+        classes.has(self.tris.class(tri))
     }
 
     /// Corners of all triangles, seen or not.
@@ -190,6 +202,13 @@ pub trait RayQuery: Sync {
     ///
     /// If `occluded` is not as long as `rays`.
     fn any_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, occluded: &mut [bool]);
+
+    /// What rays meet that go through triangles of the classes `through` and are stopped by all others: [`Passages`] says what exactly.
+    ///
+    /// Such as shadow rays in a scene with glass. Given here is the way by the questions above; whoever knows better answers the same.
+    fn passages(&self, rays: &RayBatch<'_>, through: ClassMask, passages: &mut Passages) {
+        passages.ask(self, rays, through);
+    }
 
     /// The front-most hit of one ray.
     fn closest_hit(&self, ray: &GzRay) -> Hit {

@@ -1,18 +1,63 @@
 //! The triangle that a ray leaves: by proof it is not met again, by the paper's rule it is not looked at.
+//!
+//! The questions here are those of [`RayQuery`] for rays that each leave a triangle, `rays.leaves`, by a policy.
 
-use gz_core::{ClassMask, Hit, LeavePolicy, PerRay, RayBatch, RayQuery, TriId};
+use gz_core::{ClassMask, Hit, LeavePolicy, Passages, PerRay, RayBatch, RayQuery, TriId};
 
-/// `rays` with the promise that none meets the triangle that it leaves, `leaves[i]` for ray `i`, where they leave in the way that makes it
-/// true. Other ways promise nothing, and their rays may meet it.
-pub(crate) fn leaving<'a>(rays: RayBatch<'a>, policy: LeavePolicy, leaves: &'a [TriId]) -> RayBatch<'a> {
-    if policy == LeavePolicy::Exact { rays.leaving(leaves) } else { rays }
+/// The front-most hits.
+pub(crate) fn closest_hits(query: &dyn RayQuery, policy: LeavePolicy, rays: &RayBatch<'_>, classes: ClassMask, hits: &mut [Hit]) {
+    let asked = promising(rays, policy);
+    query.closest_hits(&asked, classes, hits);
+    if let Some(leaves) = rays.leaves.filter(|_| policy.skips_source()) {
+        skip_sources(query, &asked, classes, leaves, hits);
+    }
+}
+
+/// Whether there are any.
+pub(crate) fn any_hits(
+    query: &dyn RayQuery,
+    policy: LeavePolicy,
+    rays: &RayBatch<'_>,
+    classes: ClassMask,
+    occluded: &mut [bool],
+) {
+    if !policy.skips_source() {
+        return query.any_hits(&promising(rays, policy), classes, occluded);
+    }
+    // *That* something is hit is not enough: it may be the triangle left.
+    let mut hits = vec![Hit::MISS; rays.len()];
+    closest_hits(query, policy, rays, classes, &mut hits);
+    occluded.iter_mut().zip(&hits).for_each(|(occluded, hit)| *occluded = hit.is_hit());
+}
+
+/// What rays meet that go through the triangles of `through`.
+pub(crate) fn passages(
+    query: &dyn RayQuery,
+    policy: LeavePolicy,
+    rays: &RayBatch<'_>,
+    through: ClassMask,
+    passages: &mut Passages,
+) {
+    if !policy.skips_source() {
+        return query.passages(&promising(rays, policy), through, passages);
+    }
+    let any = |rays: &RayBatch<'_>, classes, occluded: &mut [bool]| any_hits(query, policy, rays, classes, occluded);
+    passages.ask_by(any, |rays, classes, hits| closest_hits(query, policy, rays, classes, hits), rays, through);
+}
+
+/// `rays` with the promise that none meets the triangle that it leaves, where they leave in the way that makes it true. Other ways promise
+/// nothing, and their rays may meet it.
+fn promising<'a>(rays: &RayBatch<'a>, policy: LeavePolicy) -> RayBatch<'a> {
+    let mut asked = *rays;
+    asked.leaves = rays.leaves.filter(|_| policy == LeavePolicy::Exact);
+    asked
 }
 
 /// Takes hits of `rays` on the triangles that they leave, `leaves[i]` for ray `i`, for misses of those: `hits`, the front-most ones among
 /// `classes`, become the next ones.
 ///
 /// A ray meets a flat triangle at most once, so asking again behind it is enough. What lies within one step of f32 behind it is lost.
-pub(crate) fn skip_sources(query: &dyn RayQuery, rays: &RayBatch<'_>, classes: ClassMask, leaves: &[TriId], hits: &mut [Hit]) {
+fn skip_sources(query: &dyn RayQuery, rays: &RayBatch<'_>, classes: ClassMask, leaves: &[TriId], hits: &mut [Hit]) {
     for (i, (hit, &own)) in hits.iter_mut().zip(leaves).enumerate() {
         while hit.is_hit() && hit.tri == own {
             let ray = rays.ray(i);

@@ -7,7 +7,8 @@ pub struct FrameStats {
     pub primary_rays: u64,
     /// Shadow rays: one for each light that would add something to a hit that counts.
     pub shadow_rays: u64,
-    /// Further questions of shadow rays that something is in the way of, in scenes with glass: whether it is opaque, and what glass they meet.
+    /// Further questions that shadow rays take in scenes with glass, asked one by one: where something is in the way whether it is opaque, and
+    /// then what glass they meet. A query may answer all of them in one walk.
     pub tint_queries: u64,
     /// Rays reflected by mirrors.
     pub mirror_rays: u64,

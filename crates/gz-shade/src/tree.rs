@@ -3,7 +3,7 @@
 use crate::bounce::{Bouncer, Branch};
 use crate::crowd::Crowd;
 use crate::media::{Media, MediaStacks};
-use crate::source::{leaving, skip_sources};
+use crate::source::closest_hits;
 use crate::{FrameStats, GlassBlend, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
 use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, SimdLevel, SurfacePoint, TriId};
@@ -175,14 +175,10 @@ impl Tree {
         }
         let (tmin, tmax) = (PerRay::One(scene.rules.leave.tmin()), PerRay::One(f32::INFINITY));
         let rays = RayBatch::new(count, PerRay::Each(&self.origins), PerRay::Each(&self.directions), tmin, tmax);
-        let rays = leaving(rays, scene.rules.leave, &self.leaves);
+        let rays = rays.leaving(&self.leaves);
         self.hits.clear();
         self.hits.resize(count, Hit::MISS);
-        query.closest_hits(&rays, ClassMask::ALL, &mut self.hits);
-        if scene.rules.leave.skips_source() {
-            skip_sources(query, &rays, ClassMask::ALL, &self.leaves, &mut self.hits);
-        }
-
+        closest_hits(query, scene.rules.leave, &rays, ClassMask::ALL, &mut self.hits);
         for (id, &hit) in (first..).zip(&self.hits) {
             self.nodes[id].hit = hit;
             stats.secondary_hits += u64::from(hit.is_hit());

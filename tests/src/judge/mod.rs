@@ -6,7 +6,7 @@ pub use frame::{questions, shaded};
 
 use crate::truth::{Found, Ray, Triangle, Truth};
 use gz_bsp::{BspTree, Midpoint, MidpointTree};
-use gz_core::{BruteForce, ClassMask, GzCoord, GzRay, GzTri, Hit, PerRay, RayBatch, RayQuery, SimdLevel, TriBuffer};
+use gz_core::{BruteForce, ClassMask, GzCoord, GzRay, GzTri, Hit, Passages, PerRay, RayBatch, RayQuery, SimdLevel, TriBuffer};
 
 /// A ray as the truth takes it.
 pub fn truth_ray(ray: &GzRay) -> Ray {
@@ -180,7 +180,13 @@ pub fn settled(name: &str, tris: &TriBuffer, rays: &[GzRay]) -> Vec<Hit> {
     let (origin, direction) = (PerRay::Each(&origins[..]), PerRay::Each(&directions[..]));
     let batch = RayBatch::new(rays.len(), origin, direction, PerRay::Each(&tmin), PerRay::Each(&tmax));
     let mut answers: Option<Vec<Hit>> = None;
+    // All that rays meet if nothing stops them.
+    let mut passages: Option<Passages> = None;
     everyone(tris, |who, query| {
+        let mut met = Passages::default();
+        query.passages(&batch, ClassMask::ALL, &mut met);
+        assert!(passages.as_ref().is_none_or(|before| *before == met), "{name}, {who}: passages differ from those before");
+        passages = Some(met);
         let mut together = vec![Hit::MISS; rays.len()];
         query.closest_hits(&batch, ClassMask::ALL, &mut together);
         let mut any_together = vec![false; rays.len()];

@@ -7,9 +7,9 @@ use super::together::{AnyOf, ClosestOf, Queue};
 use super::walk::{Blocked, NearestOf, Stack};
 use super::wide::{BspTree, Child};
 use crate::Visits;
-use gz_core::kernel::{Asked, BUNDLE, LANES, Nearest, PACKETS, RayBundle, Rays, count};
+use gz_core::kernel::{Asked, BUNDLE, GoingThrough, LANES, Nearest, OnHit, PACKETS, RayBundle, Rays, Stopped, count};
 use gz_core::simd::{Simd, Task, dispatch};
-use gz_core::{ClassMask, GzRay, Hit, PerRay, RayBatch, RayQuery, Targets, TriBuffer, with_default_float_control};
+use gz_core::{ClassMask, GzRay, Hit, Passages, PerRay, RayBatch, RayQuery, Targets, TriBuffer, with_default_float_control};
 
 use std::cell::Cell;
 use std::ops::{Deref, DerefMut};
@@ -37,7 +37,19 @@ impl RayQuery for BspTree<'_> {
     fn any_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "one answer a ray");
         let targets = Targets::new(self.tris, classes);
-        with_default_float_control(|| dispatch(self.level, AnyTask { tree: self, rays, targets, occluded, visits: &mut () }));
+        let task = AnyTask { tree: self, rays, targets, occluded, on_hit: Stopped, visits: &mut () };
+        with_default_float_control(|| dispatch(self.level, task));
+    }
+
+    fn passages(&self, rays: &RayBatch<'_>, through: ClassMask, passages: &mut Passages) {
+        let Passages { blocked, met } = passages;
+        blocked.clear();
+        blocked.resize(rays.len(), false);
+        met.clear();
+        let targets = Targets::new(self.tris, ClassMask::ALL);
+        let on_hit = GoingThrough::new(through, met);
+        let task = AnyTask { tree: self, rays, targets, occluded: blocked, on_hit, visits: &mut () };
+        with_default_float_control(|| dispatch(self.level, task));
     }
 }
 
@@ -55,7 +67,7 @@ impl BspTree<'_> {
     pub fn any_hit_counted(&self, ray: &GzRay, classes: ClassMask, visits: &mut impl Visits) -> bool {
         let mut occluded = [false];
         let (rays, targets) = (of_one(ray), Targets::new(self.tris, classes));
-        let task = AnyTask { tree: self, rays: &rays, targets, occluded: &mut occluded, visits };
+        let task = AnyTask { tree: self, rays: &rays, targets, occluded: &mut occluded, on_hit: Stopped, visits };
         with_default_float_control(|| dispatch(self.level, task));
         occluded[0]
     }
@@ -158,20 +170,21 @@ impl<V: Visits> Task for ClosestTask<'_, V> {
     }
 }
 
-pub(super) struct AnyTask<'t, V> {
+pub(super) struct AnyTask<'t, K, V> {
     pub(super) tree: &'t BspTree<'t>,
     pub(super) rays: &'t RayBatch<'t>,
     pub(super) targets: Targets<'t>,
     pub(super) occluded: &'t mut [bool],
+    pub(super) on_hit: K,
     pub(super) visits: &'t mut V,
 }
 
-impl<V: Visits> Task for AnyTask<'_, V> {
+impl<K: OnHit, V: Visits> Task for AnyTask<'_, K, V> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self) {
-        let Self { tree, rays, targets, occluded, visits } = self;
+        let Self { tree, rays, targets, occluded, mut on_hit, visits } = self;
         let mut desk = Desk::take();
         let Desk { bundle, slabs, queue, stack } = &mut *desk;
         for (from, occluded) in (0..).step_by(BUNDLE).zip(occluded.chunks_mut(BUNDLE)) {
@@ -184,7 +197,8 @@ impl<V: Visits> Task for AnyTask<'_, V> {
                     left[p] &= !company[p];
                 }
                 if count(&company) >= COMPANY {
-                    let mut quest = AnyOf { tree, bundle, rays, targets: &targets, blocked: &mut blocked };
+                    let (targets, blocked, on_hit) = (&targets, &mut blocked, &mut on_hit);
+                    let mut quest = AnyOf { tree, bundle, rays, targets, blocked, on_hit };
                     if tree.send_together::<S, _>(slabs, slabs.way(p, lane), &company, queue, stack, &mut quest) {
                         continue;
                     }
@@ -194,19 +208,21 @@ impl<V: Visits> Task for AnyTask<'_, V> {
                     while few != 0 {
                         let lane = few.trailing_zeros() as usize;
                         few &= few - 1;
-                        let hit = tree.any_alone::<S>(rays, bundle, slabs, p, lane, Child::ROOT, stack, &targets, visits);
+                        let (of, on_hit) = (Child::ROOT, &mut on_hit);
+                        let hit = tree.any_alone::<S>(rays, bundle, slabs, p, lane, of, stack, &targets, on_hit, visits);
                         blocked[p] |= u32::from(hit) << lane;
                     }
                 }
+            }
+            if count(&fit) as usize != occluded.len() {
+                tree.far_answers(rays, from, &fit, &targets, &mut blocked, occluded.len(), &mut on_hit, visits);
             }
             for (p, occluded) in occluded.chunks_mut(LANES).enumerate() {
                 for (lane, occluded) in occluded.iter_mut().enumerate() {
                     *occluded = blocked[p] >> lane & 1 != 0;
                 }
             }
-            if count(&fit) as usize != occluded.len() {
-                tree.far_answers(rays, from, &fit, &targets, occluded, visits);
-            }
+            on_hit.settle::<S>(rays, from, &blocked, targets.positions());
         }
     }
 }
@@ -235,7 +251,8 @@ impl BspTree<'_> {
         }
     }
 
-    /// Whether these rays hit anything.
+    /// Which of these rays end at something that they hit, into `blocked`.
+    #[allow(clippy::too_many_arguments)]
     #[cold]
     #[inline(never)]
     fn far_answers(
@@ -244,16 +261,19 @@ impl BspTree<'_> {
         from: usize,
         fit: &Rays,
         targets: &Targets<'_>,
-        occluded: &mut [bool],
+        blocked: &mut Rays,
+        len: usize,
+        on_hit: &mut impl OnHit,
         visits: &mut impl Visits,
     ) {
-        for (lane, occluded) in occluded.iter_mut().enumerate().filter(|(lane, _)| fit[lane / LANES] >> (lane % LANES) & 1 == 0) {
-            let ray = rays.ray(from + lane);
+        for (p, lane) in (0..len).map(|k| (k / LANES, k % LANES)).filter(|&(p, lane)| fit[p] >> lane & 1 == 0) {
+            let place = from + p * LANES + lane;
+            let ray = rays.ray(place);
             if ray.is_valid() {
-                let (asked, leaves) = (Asked::new(rays, from + lane), rays.left_by(from + lane));
-                let mut quest = Blocked { ray: asked, ends: [ray.tmin, ray.tmax], targets, leaves, found: false };
+                let (asked, leaves, ends) = (Asked::new(rays, place), rays.left_by(place), [ray.tmin, ray.tmax]);
+                let mut quest = Blocked { ray: asked, ends, targets, leaves, of: (p, lane), on_hit, found: false };
                 self.send_far(&ray, &mut quest, visits);
-                *occluded = quest.found;
+                blocked[p] |= u32::from(quest.found) << lane;
             }
         }
     }

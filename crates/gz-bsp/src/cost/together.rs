@@ -10,7 +10,7 @@
 use super::slabs::BundleSlabs;
 use super::walk::Stack;
 use super::wide::{BspTree, Child, Target, Way, WideNode};
-use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, Spans, TriGroup, count, extremes, greatest, least};
+use gz_core::kernel::{Each, LANES, OnHit, PACKETS, RayBundle, Rays, Spans, TriGroup, count, extremes, greatest, least};
 use gz_core::simd::{Lanes, Simd};
 use gz_core::{RayBatch, Targets};
 
@@ -308,22 +308,23 @@ impl<S: Simd> BundleQuest<S> for ClosestOf<'_> {
     }
 }
 
-/// Whether there are hits.
-pub(super) struct AnyOf<'q> {
+/// Whether there are hits that rays end at.
+pub(super) struct AnyOf<'q, K> {
     pub(super) tree: &'q BspTree<'q>,
     pub(super) bundle: &'q RayBundle,
     pub(super) rays: &'q RayBatch<'q>,
     pub(super) targets: &'q Targets<'q>,
-    /// Rays that hit something.
+    /// Rays that ended.
     pub(super) blocked: &'q mut Rays,
+    pub(super) on_hit: &'q mut K,
 }
 
-impl<S: Simd> BundleQuest<S> for AnyOf<'_> {
+impl<S: Simd, K: OnHit> BundleQuest<S> for AnyOf<'_, K> {
     const ORDERED: bool = false;
 
     #[inline(always)]
     fn test(&mut self, group: &TriGroup, active: &Rays, spans: &Spans) -> Rays {
-        let hit = self.bundle.any::<S>(self.rays, group, active, spans, self.targets);
+        let hit = self.bundle.any::<S>(self.rays, group, active, spans, self.targets, self.on_hit);
         for p in 0..PACKETS {
             self.blocked[p] |= hit[p];
         }
@@ -337,7 +338,8 @@ impl<S: Simd> BundleQuest<S> for AnyOf<'_> {
 
     #[inline(always)]
     fn alone(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool {
-        let hit = self.tree.any_alone::<S>(self.rays, self.bundle, slabs, p, lane, child, stack, self.targets, &mut ());
+        let Self { tree, bundle, rays, targets, on_hit, .. } = self;
+        let hit = tree.any_alone::<S>(rays, bundle, slabs, p, lane, child, stack, targets, &mut **on_hit, &mut ());
         self.blocked[p] |= u32::from(hit) << lane;
         hit
     }

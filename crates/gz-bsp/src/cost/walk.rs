@@ -8,7 +8,7 @@ use super::build::MOST_LEVELS;
 use super::slabs::{BundleSlabs, Slabs};
 use super::wide::{BspTree, Child, Target};
 use crate::Visits;
-use gz_core::kernel::{Asked, Candidates, FilterRay, Nearest, RayBundle, is_hit};
+use gz_core::kernel::{Asked, Candidates, FilterRay, Nearest, OnHit, RayBundle, is_hit};
 use gz_core::simd::{Lanes, Simd};
 use gz_core::{GzRay, NO_TRI, RayBatch, Targets, TriId};
 
@@ -107,17 +107,27 @@ impl Quest for NearestOf<'_> {
     }
 }
 
-/// Whether a ray hits anything.
-pub(super) struct Blocked<'q> {
+/// Whether a ray hits anything that it ends at.
+pub(super) struct Blocked<'q, K> {
     pub(super) ray: Asked<'q>,
     /// Between which t.
     pub(super) ends: [f32; 2],
     pub(super) targets: &'q Targets<'q>,
     pub(super) leaves: TriId,
+    /// Its packet and lane in its bundle.
+    pub(super) of: (usize, usize),
+    pub(super) on_hit: &'q mut K,
     pub(super) found: bool,
 }
 
-impl Quest for Blocked<'_> {
+impl<K: OnHit> Blocked<'_, K> {
+    #[inline(always)]
+    fn ends_at(&mut self, tri: TriId) -> bool {
+        self.on_hit.ends(tri, self.of.0, 1 << self.of.1, self.targets) != 0
+    }
+}
+
+impl<K: OnHit> Quest for Blocked<'_, K> {
     #[inline(always)]
     fn start(&self) -> f32 {
         self.ends[1]
@@ -125,13 +135,15 @@ impl Quest for Blocked<'_> {
 
     #[inline(always)]
     fn take(&mut self, found: &Candidates, lane: usize, tri: TriId) -> Option<f32> {
-        self.found =
-            tri != self.leaves && self.targets.sees(tri) && found.is_hit(lane, self.ray, self.ends, self.targets.position(tri));
+        self.found = tri != self.leaves
+            && self.targets.sees(tri)
+            && found.is_hit(lane, self.ray, self.ends, self.targets.position(tri))
+            && self.ends_at(tri);
         (!self.found).then_some(self.ends[1])
     }
 
     fn test(&mut self, tri: TriId) -> Option<f32> {
-        self.found = self.targets.sees(tri) && is_hit(&self.ray.ray(), self.targets.position(tri));
+        self.found = self.targets.sees(tri) && is_hit(&self.ray.ray(), self.targets.position(tri)) && self.ends_at(tri);
         (!self.found).then_some(self.ends[1])
     }
 }
@@ -159,7 +171,7 @@ impl BspTree<'_> {
         bundle.set_nearest(p, lane, quest.best);
     }
 
-    /// The same for whether it hits anything.
+    /// The same for whether it hits anything that it ends at.
     #[allow(clippy::too_many_arguments)]
     #[inline(always)]
     pub(super) fn any_alone<S: Simd>(
@@ -172,10 +184,19 @@ impl BspTree<'_> {
         child: Child,
         stack: &mut Stack,
         targets: &Targets<'_>,
+        on_hit: &mut impl OnHit,
         visits: &mut impl Visits,
     ) -> bool {
         let (place, ends) = (bundle.place(p, lane), [bundle.tmin[p][lane], bundle.limit[p][lane]]);
-        let mut quest = Blocked { ray: Asked::new(rays, place), ends, targets, leaves: rays.left_by(place), found: false };
+        let mut quest = Blocked {
+            ray: Asked::new(rays, place),
+            ends,
+            targets,
+            leaves: rays.left_by(place),
+            of: (p, lane),
+            on_hit,
+            found: false,
+        };
         let (own, filter) = (slabs.alone(p, lane, ends[0]), bundle.filter_ray(p, lane));
         self.send_alone::<S>(&own, &filter, child, stack, &mut quest, visits);
         quest.found

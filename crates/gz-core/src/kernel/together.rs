@@ -7,6 +7,7 @@ use super::filter::{Judged, distance, judge};
 use super::group::{TriGroup, cross, dot, minus3};
 use super::nearest::Asked;
 use super::order::is_hit;
+use super::passage::OnHit;
 use super::plain_f32::plain_distance;
 use super::spans::{BOUND, Spans};
 use crate::simd::{Lanes, Simd, arrays3, load3, splat3};
@@ -91,7 +92,7 @@ impl RayBundle {
         together
     }
 
-    /// Which rays of `active`, fit and of those that `spans` is of, hit a triangle of `group`.
+    /// Which rays of `active`, fit and of those that `spans` is of, end at a triangle of `group` that they hit.
     #[inline(always)]
     pub fn any<S: Simd>(
         &self,
@@ -100,6 +101,7 @@ impl RayBundle {
         active: &Rays,
         spans: &Spans,
         targets: &Targets<'_>,
+        on_hit: &mut impl OnHit,
     ) -> Rays {
         let prepared = Prepared::of::<S>(group, self, spans);
         let mut worth = prepared.worth;
@@ -113,7 +115,7 @@ impl RayBundle {
             while alone != 0 {
                 let lane = alone.trailing_zeros() as usize;
                 alone &= alone - 1;
-                hits[p] |= u32::from(self.any_alone::<S>(rays, group, p, lane, targets)) << lane;
+                hits[p] |= u32::from(self.any_alone::<S>(rays, group, p, lane, targets, on_hit)) << lane;
             }
         }
         while worth != 0 {
@@ -141,6 +143,10 @@ impl RayBundle {
                 if S::CERTIFIED && unsure != 0 {
                     hit |= self.settle_any(rays, p, unsure, targets.position(tri));
                 }
+                if hit == 0 {
+                    continue;
+                }
+                hit = on_hit.ends(tri, p, hit, targets);
                 together[p] &= !hit;
                 hits[p] |= hit;
             }
@@ -173,7 +179,15 @@ impl RayBundle {
     }
 
     #[inline(always)]
-    fn any_alone<S: Simd>(&self, rays: &RayBatch<'_>, group: &TriGroup, p: usize, lane: usize, targets: &Targets<'_>) -> bool {
+    fn any_alone<S: Simd>(
+        &self,
+        rays: &RayBatch<'_>,
+        group: &TriGroup,
+        p: usize,
+        lane: usize,
+        targets: &Targets<'_>,
+        on_hit: &mut impl OnHit,
+    ) -> bool {
         let Some(found) = group.candidates::<S>(&self.filter_ray(p, lane)) else { return false };
         let (ray, ends) = (Asked::new(rays, self.place(p, lane)), [self.tmin[p][lane], self.limit[p][lane]]);
         let mut possible = found.possible;
@@ -184,7 +198,11 @@ impl RayBundle {
             if tri == NO_TRI {
                 break;
             }
-            if tri != self.tris[p][lane] && targets.sees(tri) && found.is_hit(k, ray, ends, targets.position(tri)) {
+            if tri != self.tris[p][lane]
+                && targets.sees(tri)
+                && found.is_hit(k, ray, ends, targets.position(tri))
+                && on_hit.ends(tri, p, 1 << lane, targets) != 0
+            {
                 return true;
             }
         }
