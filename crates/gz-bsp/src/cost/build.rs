@@ -1,6 +1,7 @@
 //! A tree that chooses its own planes and where to stop.
 
 use super::clip::Reference;
+use super::forest::Forest;
 use super::split::{Bins, CostModel, Cut, groups};
 use super::tight::TightBox;
 use gz_core::{Bounds, GzCoord, TriBuffer, TriId};
@@ -12,11 +13,23 @@ use std::cell::RefCell;
 pub(crate) struct Cell {
     pub(crate) bounds: Bounds,
     pub(crate) content: Content,
+    pub(crate) forest: Forest,
 }
 
 pub(crate) enum Content {
     Halves(Box<[Cell; 2]>),
     Leaf(Vec<TriId>),
+}
+
+impl Cell {
+    fn leaf(bounds: Bounds, tris: Vec<TriId>) -> Self {
+        Self { bounds, content: Content::Leaf(tris), forest: Forest::LEAF }
+    }
+
+    fn halves(bounds: Bounds, halves: [Self; 2]) -> Self {
+        let forest = Forest::of(&bounds, &halves[0].forest, &halves[1].forest);
+        Self { bounds, content: Content::Halves(Box::new(halves)), forest }
+    }
 }
 
 /// Triangles in a leaf of the finished tree at most: eight groups.
@@ -100,7 +113,7 @@ impl Builder<'_> {
         let share = |n: usize| (room as u128 * n as u128 / grown as u128) as usize;
         let (lower_room, upper_room) = (share(lower.len()), share(upper.len()));
         let halves = join(grown, || self.cell(lower, depth - 1, lower_room), || self.cell(upper, depth - 1, upper_room));
-        Cell { bounds, content: Content::Halves(Box::new(halves)) }
+        Cell::halves(bounds, halves)
     }
 
     /// The cheapest plane, when cutting there is expected to be cheaper than a leaf.
@@ -182,7 +195,7 @@ fn leaf(part: Part) -> Cell {
     let bounds = bounds_of(&part);
     let mut references = part.references;
     if references.len() <= LARGEST_LEAF {
-        return Cell { bounds, content: Content::Leaf(references.iter().map(|r| r.tri).collect()) };
+        return Cell::leaf(bounds, references.iter().map(|r| r.tri).collect());
     }
     let middle_of = |r: &Reference| r.bounds.bounds().centre();
     let axis = Bounds::of(references.iter().map(middle_of)).size().max_position();
@@ -194,7 +207,7 @@ fn leaf(part: Part) -> Cell {
         half.sort_unstable_by_key(|r| r.tri);
         leaf(Part::of(half))
     });
-    Cell { bounds, content: Content::Halves(Box::new(halves)) }
+    Cell::halves(bounds, halves)
 }
 
 #[cfg(feature = "rayon")]

@@ -8,6 +8,7 @@ mod batch;
 mod build;
 mod check;
 mod clip;
+mod forest;
 #[cfg(feature = "plain-f32")]
 mod plain_f32;
 mod slabs;

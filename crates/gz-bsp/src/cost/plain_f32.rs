@@ -2,7 +2,7 @@
 
 use super::batch::{AnyTask, ClosestTask};
 use super::wide::BspTree;
-use gz_core::kernel::InPlainF32;
+use gz_core::kernel::{InPlainF32, Stopped};
 use gz_core::simd::dispatch;
 use gz_core::{ClassMask, Hit, RayBatch, RayQuery, Targets, TriBuffer, with_default_float_control};
 
@@ -29,7 +29,7 @@ impl RayQuery for PlainF32Tree<'_> {
     fn any_hits(&self, rays: &RayBatch<'_>, classes: ClassMask, occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "one answer a ray");
         let (tree, targets) = (self.0, Targets::new(self.0.tris, classes));
-        let task = AnyTask { tree, rays, targets, occluded, visits: &mut () };
+        let task = AnyTask { tree, rays, targets, occluded, on_hit: Stopped, visits: &mut () };
         with_default_float_control(|| dispatch(tree.level, InPlainF32(task)));
     }
 }

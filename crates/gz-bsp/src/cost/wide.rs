@@ -206,23 +206,12 @@ struct Plan<'c> {
 }
 
 impl<'c> Plan<'c> {
-    /// Appends the node of `cell` with its eight largest cells, and all below; returns its index.
+    /// Appends the node of `cell` and all below; returns its index.
     fn place(&mut self, cell: &'c Cell) -> usize {
         let index = self.nodes.len();
         self.nodes.push(WideNode::EMPTY);
-        let mut cells = vec![cell];
-        // Open the largest cell again and again: its cut is the one that a ray most likely meets.
-        while cells.len() < WIDTH {
-            let open = |c: &&Cell| matches!(c.content, Content::Halves(_));
-            let largest = (0..cells.len())
-                .filter(|&k| open(&cells[k]))
-                .max_by(|&a, &b| cells[a].bounds.area().total_cmp(&cells[b].bounds.area()).then(b.cmp(&a)));
-            let Some(k) = largest else { break };
-            let Content::Halves(halves) = &cells[k].content else { break };
-            let [lower, upper] = &**halves;
-            cells[k] = lower;
-            cells.insert(k + 1, upper);
-        }
+        let mut cells = Vec::with_capacity(WIDTH);
+        side_by_side(cell, WIDTH, &mut cells);
         for (slot, cell) in cells.into_iter().enumerate() {
             let child = match &cell.content {
                 Content::Leaf(ids) if ids.is_empty() => continue,
@@ -237,5 +226,17 @@ impl<'c> Plan<'c> {
             self.nodes[index].set(slot, &bounds, child);
         }
         index
+    }
+}
+
+/// The cells that take the `places` of a node which `cell` is given.
+fn side_by_side<'c>(cell: &'c Cell, places: usize, cells: &mut Vec<&'c Cell>) {
+    match (&cell.content, cell.forest.lower(places)) {
+        (Content::Halves(halves), Some(lower)) => {
+            let [below, above] = &**halves;
+            side_by_side(below, lower, cells);
+            side_by_side(above, places - lower, cells);
+        }
+        _ => cells.push(cell),
     }
 }
