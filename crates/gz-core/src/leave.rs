@@ -1,7 +1,7 @@
 //! Leaving a surface: where a shadow, mirror or glass ray starts.
 
 use crate::GzCoord;
-use crate::kernel::{Leaving, side_sign, without_tiny};
+use crate::kernel::{Leaving, Plane, side_sign, without_tiny};
 use glam::DVec3;
 
 const U: f64 = f64::EPSILON / 2.0;
@@ -35,7 +35,8 @@ pub(crate) fn leave_to(corners: &[GzCoord; 3], weights: [f64; 3], side: i8) -> O
     if side == 0 {
         return None;
     }
-    let Leaving { plane, mut point, mut step } = Leaving::of(&corners.map(|p| p.as_dvec3().to_array()), weights);
+    let numbers = corners.map(|p| p.as_dvec3().to_array());
+    let Leaving { plane, mut point, mut step } = Leaving::of(Plane::of(&numbers), &numbers, weights);
     let (axis, towards) = way_out(corners, plane.normal, side)?;
     point = point.map(without_tiny);
     // Steps double, so that the end is certain.

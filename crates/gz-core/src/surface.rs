@@ -1,6 +1,6 @@
 //! Points of surfaces: where a ray has hit a triangle, and where others go on from.
 
-use crate::kernel::{EightPoints, hit_weights, point_at};
+use crate::kernel::{EightPoints, Plane, hit_weights, point_at};
 use crate::leave::leave_to;
 use crate::simd::dispatch;
 use crate::{GzCoord, GzRay, SimdLevel, TriBuffer, TriId, side_of};
@@ -15,20 +15,43 @@ pub struct SurfacePoint {
     pub point: DVec3,
     /// The side of the triangle's plane that the ray goes to, see [`side_of`].
     pub to_side: i8,
+    /// Unit normal of the triangle, on the side of its winding: [`TriBuffer::face_normal`]. Zero for a triangle without area.
+    pub normal: DVec3,
+    /// How much the normal's product with a direction may be off for each unit of the direction's coordinates, added.
+    pub(crate) lean: f64,
     /// Where rays start to side 1 and to side -1.
     pub(crate) starts: Option<[DVec3; 2]>,
 }
 
 impl SurfacePoint {
     /// Of a ray that hits nothing.
-    pub const NOWHERE: Self = Self { weights: [1.0, 0.0, 0.0], point: DVec3::ZERO, to_side: 0, starts: None };
+    pub const NOWHERE: Self =
+        Self { weights: [1.0, 0.0, 0.0], point: DVec3::ZERO, to_side: 0, normal: DVec3::ZERO, lean: f64::INFINITY, starts: None };
 
     /// Where `ray` meets the triangle with these corners, which it is known to hit. Without `leaving` there is no place to leave from.
     pub fn of(ray: &GzRay, corners: &[GzCoord; 3], leaving: bool) -> Self {
         let weights = hit_weights(ray, corners);
         let start = |side| leave_to(corners, weights, side).filter(|_| leaving);
         let starts = start(1).zip(start(-1)).map(|(above, below)| [above, below]);
-        Self { weights, point: point_at(corners, weights), to_side: side_of(corners, ray.direction), starts }
+        let (normal, lean) = Plane::of(&corners.map(|p| p.as_dvec3().to_array())).unit();
+        // The length of a normal without a direction has no reciprocal.
+        let (normal, lean) = if lean.is_finite() { (normal.into(), lean) } else { (DVec3::ZERO, f64::INFINITY) };
+        let (point, to_side) = (point_at(corners, weights), side_of(corners, ray.direction));
+        Self { weights, point, to_side, normal, lean, starts }
+    }
+
+    /// The side of the triangle that `direction` points to, as [`side_of`] has it: seen by the normal in most cases. `corners` are the
+    /// triangle's.
+    pub fn side_of(&self, corners: &[GzCoord; 3], direction: GzCoord) -> i8 {
+        let d = direction.as_dvec3();
+        let (slope, error) = (self.normal.dot(d), self.lean * (d.x.abs() + d.y.abs() + d.z.abs()));
+        if slope > error {
+            1
+        } else if slope < -error {
+            -1
+        } else {
+            side_of(corners, direction)
+        }
     }
 
     /// Where a ray starts that leaves to `side`, as [`crate::leave_surface`] has it. `None` for side 0, from a triangle without area, and
@@ -156,13 +179,16 @@ mod tests {
     }
 
     #[test]
-    fn rays_start_where_leave_surface_says() {
+    fn sides_and_starts_are_those_of_side_of_and_leave_surface() {
         let (tris, asked) = asked();
         let mut left = 0;
         for (ray, tri) in asked {
             let corners = tris.position(tri);
             let point = SurfacePoint::of(&ray, corners, true);
-            for direction in [ray.direction, -ray.direction, GzCoord::new(0.1, -0.8, 0.3), GzCoord::Z] {
+            assert_eq!(point.normal, tris.face_normal(tri), "{corners:?}");
+            let along = corners[1] - corners[0];
+            for direction in [ray.direction, -ray.direction, GzCoord::new(0.1, -0.8, 0.3), GzCoord::Z, along] {
+                assert_eq!(point.side_of(corners, direction), side_of(corners, direction), "{corners:?} {direction}");
                 let start = point.start(side_of(corners, direction));
                 assert_eq!(start, leave_surface(corners, point.weights, direction), "{corners:?} {direction}");
                 left += u32::from(start.is_some());

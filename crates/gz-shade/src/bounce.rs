@@ -8,7 +8,7 @@ use crate::refraction::refract;
 use crate::tree::{Node, RayKind};
 use crate::{FrameStats, GlassBlend, MaterialKind, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
-use gz_core::{GzColor, GzCoord, GzRay, SurfacePoint, side_of};
+use gz_core::{GzColor, GzCoord, GzRay, SurfacePoint};
 
 /// Branches that weigh less than this of their pixel, in their strongest channel, end. It is a sixteenth of a step of a 12-bit
 /// picture and less than a hundredth of one of an 8-bit picture, as long as what the branch sees is not much brighter than 1.
@@ -98,8 +98,8 @@ impl<'a> Bouncer<'a> {
         }
         // 2. The direction.
         let direction = match mistaken {
-            Some(_) => Some(meeting.mistaken_reflection()).map(|d| (d, side_of(meeting.corners, d))),
-            None => self.on_side(node, &meeting, reflect(meeting.d, meeting.n), -meeting.to_side),
+            Some(_) => Some(meeting.mistaken_reflection()).map(|d| (d, meeting.at.side_of(meeting.corners, d))),
+            None => self.on_side(&meeting, reflect(meeting.d, meeting.n), -meeting.to_side),
         };
         let branch = Branch { parent: id, kind: RayKind::Mirror, ray: node.ray, factor, media: node.media };
         let goes_on = self.emit(node, &meeting, direction, branch);
@@ -134,11 +134,11 @@ impl<'a> Bouncer<'a> {
         // 2. The reflected branch stays in its medium, the refracted one changes it.
         let branch = Branch { parent: id, kind: RayKind::Glass, ray: node.ray, factor: GzColor::splat(share), media: node.media };
         if share > 0.0 {
-            let direction = self.on_side(node, &meeting, reflect(meeting.d, meeting.n), -meeting.to_side);
+            let direction = self.on_side(&meeting, reflect(meeting.d, meeting.n), -meeting.to_side);
             self.emit(node, &meeting, direction, branch);
         }
         if let Some(refracted) = refracted {
-            let direction = self.on_side(node, &meeting, refracted, meeting.to_side);
+            let direction = self.on_side(&meeting, refracted, meeting.to_side);
             self.emit(node, &meeting, direction, Branch { factor: through, media: after, ..branch });
         }
         1.0
@@ -154,35 +154,31 @@ impl<'a> Bouncer<'a> {
         let tri = node.hit.tri;
         let corners = tris.position(tri);
         let d = mistaken.unwrap_or(node.ray.direction).as_dvec3().normalize_or_zero();
-        let n = normal(tris, self.needs, tri, self.scene.material(tri).interpolate, at.weights);
-        let to_side = mistaken.map_or(at.to_side, |direction| side_of(corners, direction));
+        let n = normal(tris, self.needs, tri, at, self.scene.material(tri).interpolate, at.weights);
+        let to_side = mistaken.map_or(at.to_side, |direction| at.side_of(corners, direction));
         if !self.scene.rules.geometric_sides {
             let entering = d.dot(n) < 0.0;
             return Meeting { at, corners, d, n: if entering { n } else { -n }, to_side, entering };
         }
-        let entering = outside(tris, self.needs, tri) != to_side;
+        let entering = outside(tris, self.needs, tri, at) != to_side;
         let n = if entering { n } else { -n };
         let slope = d.dot(n);
-        let n = if slope <= 0.0 {
-            n
-        } else {
-            (n - d * slope).try_normalize().unwrap_or_else(|| tris.face_normal(tri) * -f64::from(to_side))
-        };
+        let n = if slope <= 0.0 { n } else { (n - d * slope).try_normalize().unwrap_or_else(|| at.normal * -f64::from(to_side)) };
         Meeting { at, corners, d, n, to_side, entering }
     }
 
     /// `direction` in f32 if it leads to `side` of the triangle; else mirrored at the triangle's plane and counted, which is the
     /// same direction in the limit. `None` if that lies in the plane. Without geometric sides any direction will do. Beside it the
     /// side that it leads to.
-    fn on_side(&mut self, node: &Node, meeting: &Meeting<'_>, direction: DVec3, side: i8) -> Option<(GzCoord, i8)> {
+    fn on_side(&mut self, meeting: &Meeting<'_>, direction: DVec3, side: i8) -> Option<(GzCoord, i8)> {
         let rounded = direction.as_vec3();
-        let leads_to = side_of(meeting.corners, rounded);
+        let leads_to = meeting.at.side_of(meeting.corners, rounded);
         if !self.scene.rules.geometric_sides || leads_to == side {
             return Some((rounded, leads_to));
         }
         self.stats.below_surface += 1;
-        let mirrored = reflect(direction, self.scene.tris.face_normal(node.hit.tri)).as_vec3();
-        (side_of(meeting.corners, mirrored) == side).then_some((mirrored, side))
+        let mirrored = reflect(direction, meeting.at.normal).as_vec3();
+        (meeting.at.side_of(meeting.corners, mirrored) == side).then_some((mirrored, side))
     }
 
     /// The direction to the last light, which the mistake behind the paper's refraction figure takes for the ray's own.

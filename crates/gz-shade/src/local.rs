@@ -6,7 +6,7 @@ use crate::shadow::{ShadowRay, ShadowRays, Shadows};
 use crate::tree::{Node, Tree};
 use crate::{Eye, FrameStats, GzLight, Interpolate, LightKind, Material, Scene, SceneNeeds, ShadowRule, Surface, Texture};
 use glam::DVec3;
-use gz_core::{GzColor, GzCoord, GzRay, RayQuery, SurfacePoint, TriId, side_of};
+use gz_core::{GzColor, GzCoord, GzRay, RayQuery, SurfacePoint, TriId};
 
 /// A hit that is shaded.
 #[derive(Debug)]
@@ -138,7 +138,7 @@ impl Item {
             at.weights
         };
         let at_corners = needs.gouraud && material.interpolate == Interpolate::Gouraud;
-        let n = if at_corners { DVec3::ZERO } else { interpolate::normal(tris, needs, tri, material.interpolate, weights) };
+        let n = if at_corners { DVec3::ZERO } else { interpolate::normal(tris, needs, tri, &at, material.interpolate, weights) };
         let e = match rules.eye {
             Eye::Ray => -node.ray.direction.as_dvec3(),
             Eye::Fixed => DVec3::NEG_Z,
@@ -165,12 +165,12 @@ impl Item {
     /// How `light` meets it, and its shadow ray when they are `casting`.
     pub(crate) fn lit_by(&self, scene: &Scene, needs: SceneNeeds, light: &GzLight, casting: bool) -> Lit {
         let arrival = light.arrive(self.at.point);
-        let side = if self.viewer != 0 || casting { side_of(&self.corners, arrival.direction) } else { 0 };
+        let side = if self.viewer != 0 || casting { self.at.side_of(&self.corners, arrival.direction) } else { 0 };
         if self.viewer != 0 && side != self.viewer {
             return Lit::Behind;
         }
         let color = if self.at_corners {
-            let normals = interpolate::normals_at_corners(&scene.tris, needs, self.tri);
+            let normals = interpolate::normals_at_corners(&scene.tris, needs, self.tri, &self.at);
             std::array::from_fn(|corner| {
                 let arrival = light.arrive(self.corners[corner].as_dvec3());
                 light_share(&self.k, normals[corner], arrival.to_light, self.e) * arrival.color

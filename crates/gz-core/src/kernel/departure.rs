@@ -3,6 +3,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::answer::{NearWeights, corners_of, widen3};
+use super::height::Plane;
 use super::leaving::{Leaving, combine};
 use super::solution::{Bounded, Solution};
 use crate::ray::LEAST_ORIGIN;
@@ -47,12 +48,21 @@ impl Task for EightPoints<'_> {
         // D is the direction times the normal.
         let (up, down) = signs(solution.d);
         settled &= up | down;
+        let plane = Plane::of(&corners);
+        let (normal, lean) = plane.unit();
         let mut starts = [point; 2];
         if self.leaving {
-            let leaving = Leaving::of(&corners, weights);
-            settled &= step_off(&leaving, &mut starts);
+            settled &= step_off(&Leaving::of(plane, &corners, weights), &mut starts);
         }
-        (points(arrays(weights), arrays(point), up, [arrays(starts[0]), arrays(starts[1])], self.leaving), settled & ALL)
+        let rows = Rows {
+            weights: arrays(weights),
+            point: arrays(point),
+            normal: arrays(normal),
+            lean: lean.array(),
+            up,
+            starts: [arrays(starts[0]), arrays(starts[1])],
+        };
+        (rows.points(self.leaving), settled & ALL)
     }
 }
 
@@ -130,19 +140,39 @@ fn arrays<D: EightDoubles>(x: [D; 3]) -> [[f64; 8]; 3] {
     [x[0].array(), x[1].array(), x[2].array()]
 }
 
-/// Eight points from rows of their numbers.
-#[inline(always)]
-fn points(weights: [[f64; 8]; 3], point: [[f64; 8]; 3], up: u32, starts: [[[f64; 8]; 3]; 2], leaving: bool) -> [SurfacePoint; 8] {
-    let mut points = [SurfacePoint::NOWHERE; 8];
-    for k in 0..8 {
-        points[k].weights = [weights[0][k], weights[1][k], weights[2][k]];
-        points[k].point = [point[0][k], point[1][k], point[2][k]].into();
-        points[k].to_side = if up >> k & 1 != 0 { 1 } else { -1 };
-        if leaving {
-            let [above, below] = starts;
-            points[k].starts =
-                Some([[above[0][k], above[1][k], above[2][k]].into(), [below[0][k], below[1][k], below[2][k]].into()]);
+/// Eight points, number by number.
+struct Rows {
+    weights: [[f64; 8]; 3],
+    point: [[f64; 8]; 3],
+    normal: [[f64; 8]; 3],
+    lean: [f64; 8],
+    up: u32,
+    starts: [[[f64; 8]; 3]; 2],
+}
+
+impl Rows {
+    #[inline(always)]
+    fn points(&self, leaving: bool) -> [SurfacePoint; 8] {
+        let mut points = [SurfacePoint::NOWHERE; 8];
+        for k in 0..8 {
+            points[k] = SurfacePoint {
+                weights: of_lane(&self.weights, k),
+                point: of_lane(&self.point, k).into(),
+                to_side: if self.up >> k & 1 != 0 { 1 } else { -1 },
+                normal: of_lane(&self.normal, k).into(),
+                lean: self.lean[k],
+                starts: if leaving {
+                    Some([of_lane(&self.starts[0], k).into(), of_lane(&self.starts[1], k).into()])
+                } else {
+                    None
+                },
+            };
         }
+        points
     }
-    points
+}
+
+#[inline(always)]
+fn of_lane(rows: &[[f64; 8]; 3], k: usize) -> [f64; 3] {
+    [rows[0][k], rows[1][k], rows[2][k]]
 }

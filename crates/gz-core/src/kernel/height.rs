@@ -68,6 +68,18 @@ impl<F: Doubles> Plane<F> {
         F::splat(ROUNDED_BOUND).times(self.products[axis])
     }
 
+    /// The normal at length 1, and how much its product with a direction may be off for each unit of the direction's coordinates, added.
+    /// Neither is a number where the normal is 0.
+    #[inline(always)]
+    pub(crate) fn unit(&self) -> ([F; 3], F) {
+        let [x, y, z] = self.normal;
+        let inverse = F::splat(1.0).over(x.times(x).plus(y.times(y)).plus(z.times(z)).sqrt());
+        let error = self.normal_error(0).or_more(self.normal_error(1)).or_more(self.normal_error(2));
+        // Scaling and the product add three roundings each, of components that are at most 1.
+        let lean = error.times(inverse).plus(F::splat(16.0 * U));
+        ([x.times(inverse), y.times(inverse), z.times(inverse)], lean)
+    }
+
     /// (p - a) . N: above 0 on the side to which the winding's normal points. Proved 0 where value and error are 0.
     #[inline(always)]
     pub(super) fn height(&self, p: [F; 3]) -> Bounded<F> {

@@ -18,8 +18,7 @@ pub(crate) struct Leaving<F> {
 
 impl<F: Doubles> Leaving<F> {
     #[inline(always)]
-    pub(crate) fn of(corners: &[[F; 3]; 3], weights: [F; 3]) -> Self {
-        let plane = Plane::of(corners);
+    pub(crate) fn of(plane: Plane<F>, corners: &[[F; 3]; 3], weights: [F; 3]) -> Self {
         let reach = extent(corners[0]).or_more(extent(corners[1])).or_more(extent(corners[2]));
         let point = combine(corners, pulled_in(corners, weights, reach, length(plane.normal)));
         let step = F::splat(U).times(extent(point).or_more(reach.times(F::splat(LEAST_SHARE))));

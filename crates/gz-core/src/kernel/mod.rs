@@ -34,6 +34,7 @@ pub(crate) use departure::EightPoints;
 pub(crate) use exact::side_sign;
 pub use filter::FilterRay;
 pub use group::{Candidates, TriGroup};
+pub(crate) use height::Plane;
 pub(crate) use leaving::{Leaving, without_tiny};
 pub use nearest::{Asked, Nearest};
 pub use order::{Closest, is_hit};
