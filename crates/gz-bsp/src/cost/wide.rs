@@ -3,6 +3,7 @@
 use super::build::{Cell, Content, build};
 use super::split::CostModel;
 use gz_core::kernel::{FilterSpace, TriGroup};
+use gz_core::simd::Pages;
 use gz_core::{Bounds, SimdLevel, TriBuffer, TriId};
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
@@ -11,7 +12,7 @@ use rayon::prelude::*;
 pub(crate) const WIDTH: usize = 8;
 
 /// Eight cells with their tight boxes, 224 bytes. Unused cells have a box that no ray crosses.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub(crate) struct WideNode {
     /// `planes[2 * axis]` are the lower ends, `planes[2 * axis + 1]` the upper ones.
@@ -153,8 +154,8 @@ pub struct BspTree<'a> {
     pub(crate) tris: &'a TriBuffer,
     pub(crate) level: SimdLevel,
     /// The root is the first; a tree without triangles has one node without cells.
-    pub(crate) nodes: Vec<WideNode>,
-    pub(crate) groups: Vec<TriGroup>,
+    pub(crate) nodes: Pages<WideNode>,
+    pub(crate) groups: Pages<TriGroup>,
     /// Boxes and groups are in its coordinates.
     pub(crate) space: FilterSpace,
 }
@@ -171,13 +172,15 @@ impl<'a> BspTree<'a> {
         let root = build(tris, model);
         let mut plan = Plan { space, nodes: Vec::new(), groups: Vec::new() };
         plan.place(&root);
-        plan.nodes.shrink_to_fit();
+        let nodes = Pages::copy_of(&plan.nodes);
+        plan.nodes = Vec::new();
         let group = |ids: &&[TriId]| TriGroup::new(ids, tris.positions(), &space);
         #[cfg(feature = "rayon")]
-        let groups = plan.groups.par_iter().map(group).collect();
+        let groups: Vec<TriGroup> = plan.groups.par_iter().map(group).collect();
         #[cfg(not(feature = "rayon"))]
-        let groups = plan.groups.iter().map(group).collect();
-        Self { tris, level: SimdLevel::best(), nodes: plan.nodes, groups, space }
+        let groups: Vec<TriGroup> = plan.groups.iter().map(group).collect();
+        drop(root);
+        Self { tris, level: SimdLevel::best(), nodes, groups: Pages::copy_of(&groups), space }
     }
 
     /// The same tree walked with another set of vector instructions; where this machine lacks it, the best that it has.

@@ -9,7 +9,7 @@ use crate::{GzCoord, NO_TRI, TriId};
 /// Up to eight triangles, number by number, 352 bytes.
 ///
 /// Unused lanes repeat the first triangle and have the number [`NO_TRI`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub struct TriGroup {
     /// First corners: `a[axis][lane]`.

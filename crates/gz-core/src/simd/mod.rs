@@ -1,9 +1,10 @@
-//! What the processor offers, found at run time. The only unsafe code of the project.
+//! What the processor and its memory offer, found at run time. The only unsafe code of the project.
 #![allow(unsafe_code)]
 
 mod control;
 mod doubles;
 mod lanes;
+mod pages;
 mod portable;
 mod view;
 #[cfg(target_arch = "x86_64")]
@@ -12,6 +13,7 @@ mod x86;
 pub use control::with_default_float_control;
 pub use doubles::{Doubles, EightDoubles};
 pub use lanes::{Lanes, Simd, Task, arrays3, dispatch, load3, splat3};
+pub use pages::Pages;
 use std::sync::OnceLock;
 pub use view::{coordinates, coordinates_f64, nine, numbers_of};
 
