@@ -83,7 +83,7 @@ impl<'m> GoingThrough<'m> {
     #[inline(never)]
     fn sort(&mut self, blocked: &Rays) {
         self.pairs.retain(|&(place, _)| blocked[place as usize / LANES] >> (place as usize % LANES) & 1 == 0);
-        self.pairs.sort_unstable();
+        self.pairs.sort_unstable_by_key(|&(place, tri)| u64::from(place) << 32 | u64::from(tri));
         self.pairs.dedup();
     }
 }

@@ -109,7 +109,7 @@ mod tests {
             assert_eq!(&*pages, &numbers[..]);
             assert_eq!((pages.clone() == pages, pages.first()), (true, numbers.first()));
             let at = pages.as_ptr().addr();
-            assert!(at % align_of::<u64>() == 0 && (len < LARGE / 16 || at % LARGE == 0), "{len} at {at:x}");
+            assert!(at.is_multiple_of(if len < LARGE / 16 { align_of::<u64>() } else { LARGE }), "{len} at {at:x}");
         }
         assert_eq!(format!("{:?}", Pages::copy_of(&[1u8, 2])), "[1, 2]");
         assert_eq!(Pages::copy_of(&[(); 5]).len(), 5);
