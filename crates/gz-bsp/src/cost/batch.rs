@@ -23,6 +23,33 @@ fn first(rays: &Rays) -> Option<(usize, usize)> {
     (0..PACKETS).find(|&p| rays[p] != 0).map(|p| (p, rays[p].trailing_zeros() as usize))
 }
 
+/// A company, and if it has more than one packet, each packet of it: neighbours may go together where not all do.
+#[inline(always)]
+fn parts(company: &Rays) -> [Rays; 1 + PACKETS] {
+    let mut parts = [[0; PACKETS]; 1 + PACKETS];
+    parts[0] = *company;
+    for p in 0..PACKETS {
+        if company[p].count_ones() != count(company) {
+            parts[1 + p][p] = company[p];
+        }
+    }
+    parts
+}
+
+/// Whether all of `part` are still in `company`.
+#[inline(always)]
+fn is_within(part: &Rays, company: &Rays) -> bool {
+    (0..PACKETS).all(|p| part[p] & !company[p] == 0)
+}
+
+/// Takes the rays of `part` out of `company`.
+#[inline(always)]
+fn take_out(part: &Rays, company: &mut Rays) {
+    for p in 0..PACKETS {
+        company[p] &= !part[p];
+    }
+}
+
 impl RayQuery for BspTree<'_> {
     fn tris(&self) -> &TriBuffer {
         self.tris
@@ -143,14 +170,18 @@ impl<V: Visits> Task for ClosestTask<'_, V> {
             slabs.gather::<S>(bundle, hits.len().div_ceil(LANES), tree.space.reach);
             let mut left = fit;
             while let Some((p, lane)) = first(&left) {
-                let company = slabs.company(p, lane, &left);
+                let mut company = slabs.company(p, lane, &left);
                 for p in 0..PACKETS {
                     left[p] &= !company[p];
                 }
-                if count(&company) >= COMPANY {
-                    let mut quest = ClosestOf { tree, bundle, rays, targets: &targets };
-                    if tree.send_together::<S, _>(slabs, slabs.way(p, lane), &company, queue, stack, &mut quest) {
+                let way = slabs.way(p, lane);
+                for part in parts(&company) {
+                    if count(&part) < COMPANY || !is_within(&part, &company) {
                         continue;
+                    }
+                    let mut quest = ClosestOf { tree, bundle, rays, targets: &targets };
+                    if tree.send_together::<S, _>(slabs, way, &part, queue, stack, &mut quest) {
+                        take_out(&part, &mut company);
                     }
                 }
                 for p in 0..PACKETS {
@@ -192,15 +223,19 @@ impl<K: OnHit, V: Visits> Task for AnyTask<'_, K, V> {
             slabs.gather::<S>(bundle, occluded.len().div_ceil(LANES), tree.space.reach);
             let (mut left, mut blocked) = (fit, [0; PACKETS]);
             while let Some((p, lane)) = first(&left) {
-                let company = slabs.company(p, lane, &left);
+                let mut company = slabs.company(p, lane, &left);
                 for p in 0..PACKETS {
                     left[p] &= !company[p];
                 }
-                if count(&company) >= COMPANY {
+                let way = slabs.way(p, lane);
+                for part in parts(&company) {
+                    if count(&part) < COMPANY || !is_within(&part, &company) {
+                        continue;
+                    }
                     let (targets, blocked, on_hit) = (&targets, &mut blocked, &mut on_hit);
                     let mut quest = AnyOf { tree, bundle, rays, targets, blocked, on_hit };
-                    if tree.send_together::<S, _>(slabs, slabs.way(p, lane), &company, queue, stack, &mut quest) {
-                        continue;
+                    if tree.send_together::<S, _>(slabs, way, &part, queue, stack, &mut quest) {
+                        take_out(&part, &mut company);
                     }
                 }
                 for p in 0..PACKETS {
