@@ -68,11 +68,12 @@ impl Queue {
 
 /// Fewer rays than this go on alone.
 const FEW: u32 = 4;
-/// Rays go together when at the root they cross at least this share, in percent, of the cells that their interval crosses.
-const TOGETHER: u32 = 35;
+/// Rays of several packets go together when at the root they cross at least this share, in percent, of the cells that their interval crosses.
+/// Those of one packet always do: their boxes cost one step of lanes each.
+const TOGETHER: u32 = 18;
 
 /// ... and when samples of them cross at least this share of the cells that any of the samples crosses.
-const ALIKE: u32 = 65;
+const ALIKE: u32 = 75;
 
 /// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
 struct Beam {
@@ -187,7 +188,8 @@ impl BspTree<'_> {
             }
             if at == 0 {
                 let crossings: u32 = queue.cells[..queue.len].iter().map(|waiting| count(&waiting.rays)).sum();
-                if crossings * 100 < count(company) * cells as u32 * TOGETHER {
+                let packets = company.iter().filter(|&&rays| rays != 0).count();
+                if packets > 1 && crossings * 100 < count(company) * cells as u32 * TOGETHER {
                     return false;
                 }
                 spans = Spans::of::<S>(quest.bundle(), company);
