@@ -83,13 +83,25 @@ pub(super) struct EightPairs<'p, S: Simd> {
     pub(super) corners: [&'p [GzCoord; 3]; 8],
 }
 
-impl<S: Simd> EightPairs<'_, S> {
+impl<'p, S: Simd> EightPairs<'p, S> {
+    /// Of rays with these origins and directions.
+    #[inline(always)]
+    pub(super) fn of(origins: &[[f64; 3]; 8], directions: &[[f32; 3]; 8], corners: [&'p [GzCoord; 3]; 8]) -> Self {
+        let direction = widen3::<S>(<S::Eight>::unzip3(directions));
+        Self { origin: <S::Doubles>::unzip3(origins), direction, corners }
+    }
+
+    /// The corners of the triangles.
+    #[inline(always)]
+    pub(super) fn wide_corners(&self) -> [[S::Doubles; 3]; 3] {
+        let [a, b, c] = corners_of::<S>(&self.corners);
+        [widen3::<S>(a), widen3::<S>(b), widen3::<S>(c)]
+    }
+
     /// [`t_u_v`] of each lane whose bit is set, as the hit of triangle `ids[lane]`; of others a miss. `ray` gives a lane's ray.
     #[inline(always)]
     pub(super) fn hits(&self, hit: u32, ids: &[TriId; 8], ray: impl Fn(usize) -> GzRay, hits: &mut [Hit]) {
-        let [a, b, c] = corners_of::<S>(&self.corners);
-        let corners = [widen3::<S>(a), widen3::<S>(b), widen3::<S>(c)];
-        let found = InDoubles::of(&Solution::quick(self.origin, self.direction, &corners));
+        let found = InDoubles::of(&Solution::quick(self.origin, self.direction, &self.wide_corners()));
         let [lo, hi] = [found.t[0], found.t[1]];
         let (lo, hi, v, w) = (S::narrow(lo), S::narrow(hi), S::narrow(found.v), S::narrow(found.w));
         let zero = <S::Doubles>::splat(0.0);
@@ -140,22 +152,21 @@ fn alone(ray: &GzRay, tri: TriId, corners: &[GzCoord; 3]) -> Hit {
 }
 
 #[inline(always)]
-pub(super) fn widen3<S: Simd>(rows: [S::Eight; 3]) -> [S::Doubles; 3] {
+fn widen3<S: Simd>(rows: [S::Eight; 3]) -> [S::Doubles; 3] {
     [S::widen(rows[0]), S::widen(rows[1]), S::widen(rows[2])]
 }
 
 /// 2^-41.
 const HALF_SMALLEST: f64 = 1.0 / (1u64 << 41) as f64;
 /// 2^-36.
-const WEIGHT_ERROR: f64 = 1.0 / (1u64 << 36) as f64;
+pub(super) const WEIGHT_ERROR: f64 = 1.0 / (1u64 << 36) as f64;
 
 /// Weights of the three corners as f64 has them, cut to [0, 1].
 pub(super) struct NearWeights<F> {
     pub(super) weights: [F; 3],
-    /// They mean something where this is above 0 and `error` is at most `most`.
+    /// They mean something where this is above 0 and `error` is at most [`WEIGHT_ERROR`].
     pub(super) certainty: F,
     pub(super) error: F,
-    pub(super) most: F,
 }
 
 impl<F: Doubles> NearWeights<F> {
@@ -164,7 +175,7 @@ impl<F: Doubles> NearWeights<F> {
         let ([v, w], error) = solution.weights(solution.inverse());
         let u = F::splat(1.0).minus(v).minus(w);
         let weights = [cut(u), cut(v), cut(w)];
-        Self { weights, certainty: solution.certainty(), error, most: F::splat(WEIGHT_ERROR) }
+        Self { weights, certainty: solution.certainty(), error }
     }
 }
 
@@ -174,7 +185,7 @@ impl<F: Doubles> NearWeights<F> {
 /// one that does not, (1, 0, 0).
 pub fn hit_weights(ray: &GzRay, corners: &[GzCoord; 3]) -> [f64; 3] {
     let near = NearWeights::of(&Solution::of_one(ray, corners));
-    if near.certainty > 0.0 && near.error <= near.most {
+    if near.certainty > 0.0 && near.error <= WEIGHT_ERROR {
         return near.weights;
     }
     ExactHit::of(ray, corners).map_or([1.0, 0.0, 0.0], |exact| exact.weights_near())

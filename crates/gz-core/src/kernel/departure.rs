@@ -2,12 +2,13 @@
 // Axes and lanes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::answer::{NearWeights, corners_of, widen3};
+use super::answer::{EightPairs, NearWeights, WEIGHT_ERROR};
 use super::height::Plane;
 use super::leaving::{Leaving, combine};
 use super::solution::{Bounded, Solution};
+use super::together::of_lane;
 use crate::ray::LEAST_ORIGIN;
-use crate::simd::{Doubles, EightDoubles, Lanes, Simd, Task};
+use crate::simd::{Doubles, EightDoubles, Simd, Task};
 use crate::surface::SurfacePoint;
 use crate::{GzCoord, GzRay};
 
@@ -35,15 +36,13 @@ impl Task for EightPoints<'_> {
             origins[k] = self.rays[k].origin.to_array();
             directions[k] = self.rays[k].direction.to_array();
         }
-        let origin = <S::Doubles>::unzip3(&origins);
-        let direction = widen3::<S>(<S::Eight>::unzip3(&directions));
-        let [a, b, c] = corners_of::<S>(&self.corners);
-        let corners = [widen3::<S>(a), widen3::<S>(b), widen3::<S>(c)];
+        let pairs = EightPairs::<S>::of(&origins, &directions, self.corners);
+        let corners = pairs.wide_corners();
 
-        let solution = Solution::of(origin, direction, &corners);
-        let NearWeights { weights, certainty, error, most } = NearWeights::of(&solution);
+        let solution = Solution::of(pairs.origin, pairs.direction, &corners);
+        let NearWeights { weights, certainty, error } = NearWeights::of(&solution);
         let zero = <S::Doubles>::splat(0.0);
-        let mut settled = !certainty.at_most(zero) & error.at_most(most);
+        let mut settled = !certainty.at_most(zero) & error.at_most(<S::Doubles>::splat(WEIGHT_ERROR));
         let point = combine(&corners, weights);
         // D is the direction times the normal.
         let (up, down) = signs(solution.d);
@@ -170,9 +169,4 @@ impl Rows {
         }
         points
     }
-}
-
-#[inline(always)]
-fn of_lane(rows: &[[f64; 8]; 3], k: usize) -> [f64; 3] {
-    [rows[0][k], rows[1][k], rows[2][k]]
 }

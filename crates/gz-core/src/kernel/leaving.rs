@@ -2,6 +2,7 @@
 //! proved.
 
 use super::height::Plane;
+use super::solution::{difference, extent};
 use crate::ray::LEAST_ORIGIN;
 use crate::simd::Doubles;
 
@@ -68,17 +69,6 @@ pub(crate) fn without_tiny(x: f64) -> f64 {
 }
 
 #[inline(always)]
-fn difference<F: Doubles>(a: [F; 3], b: [F; 3]) -> [F; 3] {
-    [a[0].minus(b[0]), a[1].minus(b[1]), a[2].minus(b[2])]
-}
-
-#[inline(always)]
 fn length<F: Doubles>(v: [F; 3]) -> F {
     v[0].times(v[0]).plus(v[1].times(v[1])).plus(v[2].times(v[2])).sqrt()
-}
-
-/// The greatest magnitude of a component.
-#[inline(always)]
-fn extent<F: Doubles>(x: [F; 3]) -> F {
-    x[0].abs().or_more(x[1].abs()).or_more(x[2].abs())
 }

@@ -2,10 +2,10 @@
 // Axes and lanes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::answer::{EightPairs, widen3};
+use super::answer::EightPairs;
 use super::bundle::{LANES, Rays};
 use super::order::{closer, is_hit};
-use crate::simd::{EightDoubles, Lanes, Simd};
+use crate::simd::Simd;
 use crate::{ClassMask, GzCoord, GzRay, Hit, RayBatch, Targets, TriId};
 
 /// What becomes of rays that hit something.
@@ -103,10 +103,8 @@ fn hits_of<S: Simd>(rays: &RayBatch<'_>, from: usize, pairs: &[(u32, TriId)], po
         directions[k] = rays.direction.get(of[k]).to_array();
         corners[k] = &positions[ids[k] as usize];
     }
-    let origin = <S::Doubles>::unzip3(&origins);
-    let direction = widen3::<S>(<S::Eight>::unzip3(&directions));
     let wanted = 0xff >> (8 - pairs.len());
-    EightPairs::<S> { origin, direction, corners }.hits(wanted, &ids, |lane| rays.ray(of[lane]), hits);
+    EightPairs::<S>::of(&origins, &directions, corners).hits(wanted, &ids, |lane| rays.ray(of[lane]), hits);
 }
 
 /// Puts the hits from number `first` on, ray by ray, in the order in which they are met, and drops those that do not count.

@@ -50,7 +50,7 @@ fn share<F: Doubles>(d: F, [p, q]: [F; 2]) -> F {
 
 /// The greatest magnitude of a component.
 #[inline(always)]
-fn extent<F: Doubles>(x: [F; 3]) -> F {
+pub(super) fn extent<F: Doubles>(x: [F; 3]) -> F {
     x[0].abs().or_more(x[1].abs()).or_more(x[2].abs())
 }
 
@@ -142,6 +142,6 @@ impl<F: Doubles> Solution<F> {
 }
 
 #[inline(always)]
-fn difference<F: Doubles>(a: [F; 3], b: [F; 3]) -> [F; 3] {
+pub(super) fn difference<F: Doubles>(a: [F; 3], b: [F; 3]) -> [F; 3] {
     [a[0].minus(b[0]), a[1].minus(b[1]), a[2].minus(b[2])]
 }

@@ -264,7 +264,7 @@ impl RayBundle {
 }
 
 #[inline(always)]
-fn of_lane(rows: &[[f32; 8]; 3], k: usize) -> [f32; 3] {
+pub(super) fn of_lane<T: Copy>(rows: &[[T; 8]; 3], k: usize) -> [T; 3] {
     [rows[0][k], rows[1][k], rows[2][k]]
 }
 
