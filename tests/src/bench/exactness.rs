@@ -159,11 +159,7 @@ impl Visits for Climb<'_> {
         // The triangle that a ray leaves is known not to be hit and not asked.
         if self.leaves != Some(tri) {
             let (_, by) = rung(self.ray, self.tris.position(tri), Some(self.space));
-            self.highest = match (self.highest, by) {
-                (Rung::Exact, _) | (_, Rung::Exact) => Rung::Exact,
-                (Rung::F64, _) | (_, Rung::F64) => Rung::F64,
-                _ => Rung::F32,
-            };
+            self.highest = self.highest.max(by);
         }
     }
 }

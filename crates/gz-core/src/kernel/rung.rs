@@ -5,8 +5,8 @@ use super::{Candidates, FilterRay, FilterSpace, TriGroup, is_hit};
 use crate::simd::{Simd, Task, dispatch};
 use crate::{GzCoord, GzRay, SimdLevel};
 
-/// The arithmetic whose error bound proved whether a ray hits a triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The arithmetic whose error bound proved whether a ray hits a triangle; the closer and slower, the higher.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rung {
     /// f32, eight triangles at a time.
     F32,
