@@ -50,7 +50,7 @@ pub use leave::{leave_surface, side_of};
 pub use leave_policy::LeavePolicy;
 pub use matrix::GzMatrix;
 pub use passages::Passages;
-pub use pixel::{GzPixel, TBuffer, TileScratch, trace_tile};
+pub use pixel::{GzPixel, TBuffer, TileScratch, tile_hits, trace_tile};
 pub use query::{ClassMask, PerRay, RayBatch, RayQuery, Targets};
 pub use ray::GzRay;
 pub use simd::{SimdLevel, with_default_float_control};

@@ -1,7 +1,7 @@
 //! The T-value pixel and buffer: what the homework's Z-buffer became.
 
 use crate::camera::PrimaryRays;
-use crate::{ClassMask, GzCamera, Hit, RayQuery, Tile, TileGrid, TriBuffer};
+use crate::{ClassMask, GzCamera, Hit, RayBatch, RayQuery, Tile, TileGrid, TriBuffer};
 use glam::{DVec2, DVec3};
 
 /// What a primary ray found: the triangle, its T-value in place of the homework's z, and the point of the hit.
@@ -35,14 +35,27 @@ pub fn trace_tile(
     scratch: &mut TileScratch,
     out: &mut Vec<GzPixel>,
 ) {
-    scratch.places.clear();
-    scratch.places.extend(tile.in_squares());
-    let rays = camera.rays(&scratch.places, offset, &mut scratch.rays);
-    scratch.hits.clear();
-    scratch.hits.resize(rays.len(), Hit::MISS);
-    query.closest_hits(&rays, ClassMask::ALL, &mut scratch.hits);
+    let (_, hits) = tile_hits(tile, offset, camera, query, scratch);
     out.clear();
-    out.extend(scratch.hits.iter().map(|&hit| GzPixel::of(hit, query.tris())));
+    out.extend(hits.iter().map(|&hit| GzPixel::of(hit, query.tris())));
+}
+
+/// The same without the points of the hits: the primary rays and what each hits.
+pub fn tile_hits<'s>(
+    tile: &Tile,
+    offset: DVec2,
+    camera: &GzCamera,
+    query: &(impl RayQuery + ?Sized),
+    scratch: &'s mut TileScratch,
+) -> (RayBatch<'s>, &'s [Hit]) {
+    let TileScratch { places, rays, hits } = scratch;
+    places.clear();
+    places.extend(tile.in_squares());
+    let rays = camera.rays(places, offset, rays);
+    hits.clear();
+    hits.resize(rays.len(), Hit::MISS);
+    query.closest_hits(&rays, ClassMask::ALL, hits);
+    (rays, hits)
 }
 
 /// Room for one tile's primary rays, kept from tile to tile.

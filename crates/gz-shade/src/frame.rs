@@ -5,7 +5,7 @@ use crate::local::Lighting;
 use crate::tree::{MAX_NODES, Node, TooLarge, Tree};
 use crate::{FrameStats, Scene, SceneNeeds};
 use glam::{DVec2, DVec3};
-use gz_core::{GzColor, GzPixel, RayQuery, Tile, TileGrid, TileScratch, trace_tile};
+use gz_core::{GzColor, RayQuery, Tile, TileGrid, TileScratch, tile_hits};
 use rayon::prelude::*;
 
 /// A shaded picture or part of one.
@@ -30,8 +30,6 @@ const MOST_AT_A_TIME: usize = 1 << 8;
 #[derive(Debug, Default)]
 pub struct ShadeScratch {
     primary: TileScratch,
-    pixels: Vec<GzPixel>,
-    places: Vec<(u32, u32)>,
     /// How many pixels were shaded at a time last; 0 before the first.
     at_a_time: usize,
     /// The colours of a sample.
@@ -131,23 +129,21 @@ pub(crate) fn trace_and_shade(
     scratch: &mut ShadeScratch,
     stats: &mut FrameStats,
 ) {
-    let ShadeScratch { primary, pixels, places, at_a_time, shaded, tree, lighting, .. } = scratch;
-    // Primary rays -> T-value pixels.
-    trace_tile(tile, offset, &scene.camera, query, primary, pixels);
-    stats.primary_rays += pixels.len() as u64;
-    stats.primary_hits += pixels.iter().filter(|pixel| pixel.hit.is_hit()).count() as u64;
-    places.clear();
-    places.extend(tile.in_squares());
+    let ShadeScratch { primary, at_a_time, shaded, tree, lighting, .. } = scratch;
+    // Primary rays -> T-values.
+    let (rays, hits) = tile_hits(tile, offset, &scene.camera, query, primary);
+    stats.primary_rays += hits.len() as u64;
+    stats.primary_hits += hits.iter().filter(|hit| hit.is_hit()).count() as u64;
     shaded.clear();
     if *at_a_time == 0 {
         *at_a_time = MOST_AT_A_TIME;
     }
-    while shaded.len() < pixels.len() {
-        let part = shaded.len()..pixels.len().min(shaded.len() + *at_a_time);
+    while shaded.len() < hits.len() {
+        let part = shaded.len()..hits.len().min(shaded.len() + *at_a_time);
         // The pixels: the roots.
         tree.clear();
-        for (id, (&(i, j), pixel)) in places[part.clone()].iter().zip(&pixels[part.clone()]).enumerate() {
-            tree.nodes.push(Node::root(id as u32, scene.camera.ray(i, j, offset), pixel.hit));
+        for (id, pixel) in part.clone().enumerate() {
+            tree.nodes.push(Node::root(id as u32, rays.ray(pixel), hits[pixel]));
         }
         tree.meet(scene);
         // Mirror and glass rays: the branches.

@@ -130,9 +130,8 @@ impl Tree {
             let (media, branches) = (&mut self.media, &mut self.branches);
             let mut bouncer = Bouncer { scene, needs, media, branches, stats };
             for id in level.clone() {
-                let node = self.nodes[id];
-                if node.hit.is_hit() {
-                    self.nodes[id].keep = bouncer.bounce(id as u32, &node, &self.points[id]);
+                if self.nodes[id].hit.is_hit() {
+                    self.nodes[id].keep = bouncer.bounce(id as u32, &self.nodes[id], &self.points[id]);
                 }
             }
             // 2. The heaviest of those rays are the next level.

@@ -3,7 +3,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::answer::EightPairs;
-use super::bundle::{LANES, Rays};
+use super::bundle::{BUNDLE, LANES, Rays};
 use super::order::{closer, is_hit};
 use crate::simd::Simd;
 use crate::{ClassMask, GzCoord, GzRay, Hit, RayBatch, Targets, TriId};
@@ -37,6 +37,8 @@ pub struct GoingThrough<'m> {
     through: ClassMask,
     /// Places in the bundle, and triangles.
     pairs: Vec<(u32, TriId)>,
+    /// Room for the triangles of pairs.
+    tris: Vec<TriId>,
     /// What the rays of bundles before met, as [`crate::Passages`] has it.
     met: &'m mut Vec<(u32, Hit)>,
 }
@@ -77,14 +79,34 @@ impl OnHit for GoingThrough<'_> {
 impl<'m> GoingThrough<'m> {
     /// Nothing met yet; what is goes to `met`.
     pub fn new(through: ClassMask, met: &'m mut Vec<(u32, Hit)>) -> Self {
-        Self { through, pairs: Vec::new(), met }
+        Self { through, pairs: Vec::new(), tris: Vec::new(), met }
     }
 
+    /// Puts the pairs in the order of their places, each once, and drops those of blocked rays. By counting: a ray has few.
     #[inline(never)]
     fn sort(&mut self, blocked: &Rays) {
-        self.pairs.retain(|&(place, _)| blocked[place as usize / LANES] >> (place as usize % LANES) & 1 == 0);
-        self.pairs.sort_unstable_by_key(|&(place, tri)| u64::from(place) << 32 | u64::from(tri));
-        self.pairs.dedup();
+        let Self { pairs, tris, .. } = self;
+        pairs.retain(|&(place, _)| blocked[place as usize / LANES] >> (place as usize % LANES) & 1 == 0);
+        let mut ends = [0; BUNDLE];
+        pairs.iter().for_each(|&(place, _)| ends[place as usize] += 1);
+        let mut end = 0;
+        for count in &mut ends {
+            end += std::mem::replace(count, end);
+        }
+        tris.clear();
+        tris.resize(end, 0);
+        for (place, tri) in pairs.drain(..) {
+            let next = &mut ends[place as usize];
+            tris[*next] = tri;
+            *next += 1;
+        }
+        let mut first = 0;
+        for (place, &end) in ends.iter().enumerate() {
+            let of_ray = &mut tris[first..end];
+            of_ray.sort_unstable();
+            pairs.extend(of_ray.chunk_by(|tri, other| tri == other).map(|alike| (place as u32, alike[0])));
+            first = end;
+        }
     }
 }
 
@@ -107,9 +129,11 @@ fn hits_of<S: Simd>(rays: &RayBatch<'_>, from: usize, pairs: &[(u32, TriId)], po
     EightPairs::<S>::of(&origins, &directions, corners).hits(wanted, &ids, |lane| rays.ray(of[lane]), hits);
 }
 
-/// Puts the hits from number `first` on, ray by ray, in the order in which they are met, and drops those that do not count.
+/// Puts the hits from number `first` on, which come ray by ray, in the order in which they are met, and drops those that do not count.
 fn in_order(rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], met: &mut Vec<(u32, Hit)>, first: usize) {
-    met[first..].sort_unstable_by(|(ray, hit), (other_ray, other)| ray.cmp(other_ray).then(hit.t.total_cmp(&other.t)));
+    for of_ray in met[first..].chunk_by_mut(|(ray, _), (other, _)| ray == other) {
+        of_ray.sort_unstable_by(|(_, hit), (_, other)| hit.t.total_cmp(&other.t));
+    }
     let (mut kept, mut next) = (first, first);
     while next < met.len() {
         let (number, Hit { t, .. }) = met[next];
