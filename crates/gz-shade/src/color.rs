@@ -1,5 +1,7 @@
 //! Channels as they are written to a picture and read from one. All functions take one channel of a linear colour.
 
+use std::sync::LazyLock;
+
 /// The 12-bit intensity of a channel, as the course writes it: clamped to [0, 1], times 4095, cut.
 ///
 /// Returns 0 to 4095; NaN gives 0.
@@ -28,8 +30,50 @@ pub fn course12_channel(intensity: u16) -> f32 {
 ///
 /// Source: IEC 61966-2-1, the piecewise curve.
 pub fn srgb_byte(channel: f32) -> u8 {
-    // Truncating x + 1/2 rounds to nearest as x is not negative; a NaN casts to 0.
-    (srgb_from_linear(channel.clamp(0.0, 1.0)) * 255.0 + 0.5) as u8
+    static STEPS: LazyLock<SrgbSteps> = LazyLock::new(SrgbSteps::new);
+    STEPS.byte(channel)
+}
+
+/// Where the sRGB byte of a channel changes, found once from the curve itself, as a power for each channel of a picture takes long.
+struct SrgbSteps {
+    /// The least channel of each byte; beyond the last, infinity.
+    least: [f32; 257],
+    /// The byte of the least channel among those whose bits agree in all but the lower [`Self::LOWER`]. So few hold one step at most.
+    bytes: Vec<u8>,
+}
+
+impl SrgbSteps {
+    const LOWER: u32 = 16;
+
+    fn new() -> Self {
+        // The bits of numbers from 0 to 1 are in the order of the numbers.
+        let one = 1.0f32.to_bits();
+        let mut least = [0.0; 257];
+        for byte in 1..=255 {
+            let (mut below, mut reached) = (0, one);
+            while reached - below > 1 {
+                let middle = below + (reached - below) / 2;
+                if Self::by_curve(f32::from_bits(middle)) < byte { below = middle } else { reached = middle }
+            }
+            least[usize::from(byte)] = f32::from_bits(reached);
+        }
+        least[256] = f32::INFINITY;
+        let bytes = (0..=one >> Self::LOWER).map(|upper| Self::by_curve(f32::from_bits(upper << Self::LOWER))).collect();
+        Self { least, bytes }
+    }
+
+    fn byte(&self, channel: f32) -> u8 {
+        // No NaN, and no -0, is above 0.
+        let channel = if channel > 0.0 { channel.min(1.0) } else { 0.0 };
+        let byte = self.bytes[channel.to_bits() as usize >> Self::LOWER];
+        byte + u8::from(channel >= self.least[usize::from(byte) + 1])
+    }
+
+    /// The byte of a channel from 0 to 1.
+    fn by_curve(channel: f32) -> u8 {
+        // Truncating x + 1/2 rounds to nearest as x is not negative.
+        (srgb_from_linear(channel) * 255.0 + 0.5) as u8
+    }
 }
 
 /// The linear channel, in [0, 1], of an sRGB byte.
@@ -78,6 +122,19 @@ mod tests {
             assert_eq!(srgb_byte(linear_from_srgb_byte(byte)), byte);
         }
         assert_eq!((srgb_byte(-1.0), srgb_byte(2.0), srgb_byte(f32::NAN)), (0, 255, 0));
+    }
+
+    #[test]
+    fn srgb_bytes_are_those_of_the_curve() {
+        let steps = SrgbSteps::new();
+        // Beside every step, and at the ends of what one entry of the table stands for.
+        let ends = (0..=1.0f32.to_bits() >> SrgbSteps::LOWER).map(|upper| f32::from_bits(upper << SrgbSteps::LOWER));
+        for channel in steps.least[..256].iter().copied().chain(ends) {
+            for channel in [channel.next_down(), channel, channel.next_up()].map(|c| c.clamp(0.0, 1.0)) {
+                assert_eq!(srgb_byte(channel), SrgbSteps::by_curve(channel), "{channel}");
+            }
+        }
+        assert_eq!(srgb_byte(-0.0), 0);
     }
 
     #[test]
