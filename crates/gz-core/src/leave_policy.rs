@@ -1,7 +1,7 @@
 //! Other ways to leave a surface, for comparison with the exact one.
 
 use crate::leave::leave_surface;
-use crate::{GzCoord, GzRay, SurfacePoint};
+use crate::{GzCoord, GzRay};
 use glam::DVec3;
 
 /// Where shadow, mirror and glass rays start, and what they do not see.
@@ -38,18 +38,21 @@ impl LeavePolicy {
     ///
     /// Whoever asks about it has to mind [`Self::skips_source`].
     pub fn leave(self, corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoord) -> Option<GzRay> {
-        match self {
-            Self::Exact => Some(self.from(leave_surface(corners, weights, direction)?, direction)),
-            _ => Some(self.from(self.cured(corners, weights, direction), direction)),
-        }
+        let start = if self.needs_starts() { leave_surface(corners, weights, direction) } else { None };
+        self.leave_from(start, corners, weights, direction)
     }
 
-    /// The same from a point of the triangle whose places to leave from are known, if the rule is the exact one. `side` is where
-    /// `direction` leads, by [`crate::side_of`].
-    pub fn leave_at(self, corners: &[GzCoord; 3], point: &SurfacePoint, direction: GzCoord, side: i8) -> Option<GzRay> {
+    /// The same where it is known already where the exact rule has the ray `start`, as [`crate::SurfacePoint::start`] has it.
+    pub fn leave_from(
+        self,
+        start: Option<DVec3>,
+        corners: &[GzCoord; 3],
+        weights: [f64; 3],
+        direction: GzCoord,
+    ) -> Option<GzRay> {
         match self {
-            Self::Exact => Some(self.from(point.start(side)?, direction)),
-            _ => Some(self.from(self.cured(corners, point.weights, direction), direction)),
+            Self::Exact => Some(self.from(start?, direction)),
+            _ => Some(self.from(self.cured(corners, weights, direction), direction)),
         }
     }
 
@@ -68,7 +71,7 @@ impl LeavePolicy {
         }
     }
 
-    /// Whether rays start from the places of a [`SurfacePoint`].
+    /// Whether rays start from the places of a [`crate::SurfacePoint`].
     pub fn needs_starts(self) -> bool {
         self == Self::Exact
     }

@@ -1,9 +1,8 @@
 //! Points of surfaces: where a ray has hit a triangle, and where others go on from.
 
-use crate::kernel::{EightPoints, Plane, hit_weights, point_at};
+use crate::kernel::{Plane, hit_weights, point_at};
 use crate::leave::leave_to;
-use crate::simd::dispatch;
-use crate::{GzCoord, GzRay, SimdLevel, TriBuffer, TriId, side_of};
+use crate::{GzCoord, GzRay, side_of};
 use glam::DVec3;
 
 /// The point where a ray has hit a triangle, in f64, and the places from which rays leave it there.
@@ -24,10 +23,6 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// Of a ray that hits nothing.
-    pub const NOWHERE: Self =
-        Self { weights: [1.0, 0.0, 0.0], point: DVec3::ZERO, to_side: 0, normal: DVec3::ZERO, lean: f64::INFINITY, starts: None };
-
     /// Where `ray` meets the triangle with these corners, which it is known to hit. Without `leaving` there is no place to leave from.
     pub fn of(ray: &GzRay, corners: &[GzCoord; 3], leaving: bool) -> Self {
         let weights = hit_weights(ray, corners);
@@ -64,65 +59,16 @@ impl SurfacePoint {
             _ => None,
         }
     }
-
-    /// Adds the points of `hits` to `points`: of each its ray and the triangle of `tris` that it is known to hit; `None`, of a miss, is
-    /// [`Self::NOWHERE`]. Eight at a time with the instructions of `level`; the numbers are those of [`Self::of`].
-    pub fn of_hits(
-        tris: &TriBuffer,
-        hits: impl Iterator<Item = Option<(GzRay, TriId)>>,
-        leaving: bool,
-        level: SimdLevel,
-        points: &mut Vec<Self>,
-    ) {
-        let mut eight = Waiting::default();
-        for hit in hits {
-            if let Some((ray, tri)) = hit {
-                eight.add(ray, tris.position(tri), points.len());
-            }
-            points.push(Self::NOWHERE);
-            if eight.count == 8 {
-                eight.settle(leaving, level, points);
-            }
-        }
-        eight.settle(leaving, level, points);
-    }
-}
-
-/// Hits that wait until there are eight.
-#[derive(Default)]
-struct Waiting<'t> {
-    /// Rays, the corners of their triangles, and their places in the list; unused ones hold what was there.
-    hits: Option<([GzRay; 8], [&'t [GzCoord; 3]; 8])>,
-    places: [usize; 8],
-    count: usize,
-}
-
-impl<'t> Waiting<'t> {
-    fn add(&mut self, ray: GzRay, corners: &'t [GzCoord; 3], place: usize) {
-        let (rays, triangles) = self.hits.get_or_insert(([ray; 8], [corners; 8]));
-        (rays[self.count], triangles[self.count], self.places[self.count]) = (ray, corners, place);
-        self.count += 1;
-    }
-
-    fn settle(&mut self, leaving: bool, level: SimdLevel, points: &mut [SurfacePoint]) {
-        let Some((rays, corners)) = &self.hits else { return };
-        let (eight, settled) = dispatch(level, EightPoints { rays, corners: *corners, leaving });
-        for (k, &place) in self.places[..self.count].iter().enumerate() {
-            let settled = settled >> k & 1 != 0;
-            points[place] = if settled { eight[k] } else { SurfacePoint::of(&rays[k], corners[k], leaving) };
-        }
-        self.count = 0;
-    }
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
-    use crate::{BruteForce, RayQuery, leave_surface};
+    use crate::{TriBuffer, TriId, leave_surface};
 
     /// Triangles of all kinds side by side, and rays that meet most of them: flat ones, needles, one through the origin of space, tiny and
     /// huge ones, a bent one whose edges round in f64, one without area.
-    fn asked() -> (TriBuffer, Vec<(GzRay, TriId)>) {
+    pub(crate) fn asked() -> (TriBuffer, Vec<(GzRay, TriId)>) {
         let mut triangles = Vec::new();
         for k in 0..40u32 {
             let (x, thin) = (k as f32, 1.0 / (1u32 << (k % 24)) as f32);
@@ -147,35 +93,6 @@ mod tests {
             }
         }
         (tris, asked)
-    }
-
-    #[test]
-    fn eight_points_at_a_time_are_those_of_one_at_every_level() {
-        let (tris, asked) = asked();
-        let brute = BruteForce::new(&tris);
-        // A miss in between, and a last batch of fewer than eight.
-        let hits: Vec<_> = asked
-            .iter()
-            .enumerate()
-            .map(|(k, &(ray, tri))| (k % 11 != 0 && brute.closest_hit(&ray).is_hit()).then_some((ray, tri)))
-            .filter(|hit| hit.is_none_or(|(ray, tri)| crate::kernel::is_hit(&ray, tris.position(tri))))
-            .collect();
-        for leaving in [true, false] {
-            let expected: Vec<SurfacePoint> = hits
-                .iter()
-                .map(|hit| hit.map_or(SurfacePoint::NOWHERE, |(ray, tri)| SurfacePoint::of(&ray, tris.position(tri), leaving)))
-                .collect();
-            let met = expected.iter().filter(|point| point.to_side != 0).count();
-            assert!(met > 1500, "{met} of {}", hits.len());
-            for &level in SimdLevel::available() {
-                let mut points = Vec::new();
-                SurfacePoint::of_hits(&tris, hits.iter().copied(), leaving, level, &mut points);
-                assert_eq!(points.len(), expected.len());
-                for (k, (point, expected)) in points.iter().zip(&expected).enumerate() {
-                    assert_eq!(point, expected, "{k} at {level:?}");
-                }
-            }
-        }
     }
 
     #[test]

@@ -1,14 +1,15 @@
 //! Where a ray goes on at a mirror or at glass, and how much each branch counts.
 
-use crate::interpolate::{normal, outside};
+use crate::bend::{Bends, Meetings};
+use crate::eight::{lanes, vector};
+use crate::hits::EightHits;
 use crate::media::{Media, MediaStacks};
-use crate::optics::reflectance;
 use crate::reflection::reflect;
 use crate::refraction::refract;
 use crate::tree::{Node, RayKind};
 use crate::{FrameStats, GlassBlend, MaterialKind, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
-use gz_core::{GzColor, GzCoord, GzRay, SurfacePoint};
+use gz_core::{GzColor, GzCoord, GzRay, side_of};
 
 /// Branches that weigh less than this of their pixel, in their strongest channel, end. It is a sixteenth of a step of a 12-bit
 /// picture and less than a hundredth of one of an 8-bit picture, as long as what the branch sees is not much brighter than 1.
@@ -34,75 +35,136 @@ pub(crate) struct Bouncer<'a> {
     pub(crate) stats: &'a mut FrameStats,
 }
 
-/// How a ray meets a surface.
-struct Meeting<'p> {
-    at: &'p SurfacePoint,
-    corners: &'p [GzCoord; 3],
-    /// Direction of the ray, at length 1.
-    d: DVec3,
-    /// Shading normal at length 1, turned against the ray: d.n <= 0.
-    n: DVec3,
-    /// The side of the triangle that the ray goes to, as [`side_of`] has it.
-    to_side: i8,
-    /// The ray comes from outside.
-    entering: bool,
+/// One of eight hits, as a mirror or glass sees it.
+#[derive(Clone, Copy)]
+struct Spot<'h> {
+    hits: &'h EightHits,
+    meetings: &'h Meetings,
+    bends: &'h Bends,
+    k: usize,
 }
 
-impl Meeting<'_> {
-    /// Cosine between the normal and the incoming ray, in [0, 1].
-    fn cos(&self) -> f64 {
-        (-self.d.dot(self.n)).clamp(0.0, 1.0)
+impl Spot<'_> {
+    /// The ray's direction, at length 1, and the shading normal turned against it.
+    fn directions(&self) -> (DVec3, DVec3) {
+        (vector(&self.meetings.d, self.k), vector(&self.meetings.n, self.k))
+    }
+
+    /// The side of the triangle that the ray goes to.
+    fn to_side(&self) -> i8 {
+        self.meetings.to_side[self.k]
     }
 
     /// d - 2 |d.n| n with the normal as it is stored: where the ray comes against that normal, the paper's refraction program turned
     /// the cosine and forgot the normal.
     fn mistaken_reflection(&self) -> GzCoord {
-        let stored = if self.entering { self.n } else { -self.n };
-        (self.d - stored * (2.0 * self.cos())).normalize_or_zero().as_vec3()
-    }
-
-    /// n1 / n2 as the paper's program has it, without media: a ray along the normal goes from air into `ior`, one against it comes
-    /// out. That is the wrong way round for normals that point outside, and its refraction figure shows it.
-    fn sheet_eta(&self, ior: f32) -> f64 {
-        if self.entering { f64::from(ior) } else { 1.0 / f64::from(ior) }
+        let (d, n) = self.directions();
+        let stored = if self.meetings.entering >> self.k & 1 != 0 { n } else { -n };
+        (d - stored * (2.0 * self.meetings.cos[self.k])).normalize_or_zero().as_vec3()
     }
 }
 
-impl<'a> Bouncer<'a> {
-    /// Adds the branches that go on from node `id`, which hits at `point`, and returns what its local colour is multiplied by.
+/// n1 / n2 as the paper's program has it, without media: a ray along the normal goes from air into `ior`, one against it comes
+/// out. That is the wrong way round for normals that point outside, and its refraction figure shows it.
+fn sheet_eta(entering: bool, ior: f32) -> f64 {
+    if entering { f64::from(ior) } else { 1.0 / f64::from(ior) }
+}
+
+/// The boundaries that eight rays come to.
+struct Boundaries {
+    /// n1 / n2; 1 where it does not matter.
+    eta: [f64; 8],
+    /// What rays are in that go through.
+    after: [Media; 8],
+    /// The lanes whose rays leave what they never entered.
+    unmatched: u32,
+}
+
+impl Bouncer<'_> {
+    /// Adds the branches that go on from `hits` and tells their nodes what the local colour is multiplied by.
     ///
     /// At the depth limit a hit has no branches and keeps its local colour whole.
-    pub(crate) fn bounce(&mut self, id: u32, node: &Node, point: &'a SurfacePoint) -> f32 {
-        match self.scene.material(node.hit.tri).kind {
-            MaterialKind::Mirror { ior } if self.needs.mirrors => self.mirror(id, node, point, ior),
-            MaterialKind::Glass { ior } if self.needs.glass => self.glass(id, node, point, ior),
-            _ => 1.0,
+    pub(crate) fn bounce(&mut self, hits: &EightHits, nodes: &mut [Node]) {
+        let scene = self.scene;
+        let (mut mirrors, mut glass) = (0, 0);
+        for k in 0..hits.count {
+            match scene.material(hits.tris[k]).kind {
+                MaterialKind::Mirror { .. } if self.needs.mirrors => mirrors |= 1 << k,
+                MaterialKind::Glass { .. } if self.needs.glass => glass |= 1 << k,
+                _ => {}
+            }
+        }
+        if mirrors | glass == 0 {
+            return;
+        }
+        // 1. Where do the rays come from?
+        let mut directions = hits.nodes.map(|id| nodes[id as usize].ray.direction);
+        let mut to_side = hits.at.to_side;
+        for k in lanes(if scene.rules.reflect_last_light { mirrors } else { 0 }) {
+            if let Some(mistaken) = self.last_light(&nodes[hits.nodes[k] as usize]) {
+                directions[k] = mistaken;
+                to_side[k] = side_of(scene.tris.position(hits.tris[k]), mistaken);
+            }
+        }
+        let meetings = Meetings::of(hits, &directions, to_side, scene.rules.geometric_sides);
+        // 2. From which medium to which, and where does that bend them to?
+        let Boundaries { eta, after, unmatched } = self.boundaries(hits, mirrors | glass, &meetings, nodes);
+        let bends = Bends::of(hits, &meetings, &eta, scene.rules.fresnel, glass != 0);
+        // 3. What goes on?
+        for k in lanes(mirrors | glass) {
+            let (id, spot) = (hits.nodes[k], Spot { hits, meetings: &meetings, bends: &bends, k });
+            let node = &nodes[id as usize];
+            let keep = if mirrors >> k & 1 != 0 {
+                self.mirror(id, node, spot)
+            } else {
+                self.glass(id, node, spot, eta[k], after[k], unmatched >> k & 1 != 0)
+            };
+            nodes[id as usize].keep = keep;
         }
     }
 
-    fn mirror(&mut self, id: u32, node: &Node, point: &'a SurfacePoint, ior: Option<f32>) -> f32 {
-        let rules = &self.scene.rules;
-        let mistaken = self.last_light(node).filter(|_| rules.reflect_last_light);
-        let meeting = self.meet(node, point, mistaken);
+    fn boundaries(&mut self, hits: &EightHits, bouncing: u32, meetings: &Meetings, nodes: &[Node]) -> Boundaries {
+        let mut found = Boundaries { eta: [1.0; 8], after: [Media::AIR; 8], unmatched: 0 };
+        let (scene, rules) = (self.scene, &self.scene.rules);
+        for k in lanes(bouncing) {
+            let (media, entering) = (nodes[hits.nodes[k] as usize].media, meetings.entering >> k & 1 != 0);
+            found.after[k] = media;
+            found.eta[k] = match (scene.material(hits.tris[k]).kind, rules.mirror_blend, rules.glass_blend) {
+                (MaterialKind::Mirror { ior: Some(ior) }, MirrorBlend::Physical, _) => self.media.ior(media) / f64::from(ior),
+                (MaterialKind::Mirror { ior: Some(ior) }, MirrorBlend::Add, _) => sheet_eta(entering, ior),
+                (MaterialKind::Glass { ior }, _, GlassBlend::Physical) => {
+                    let crossing = self.media.cross(media, scene.tris.material(hits.tris[k]), f64::from(ior), entering);
+                    found.after[k] = crossing.after;
+                    found.unmatched |= u32::from(crossing.unmatched) << k;
+                    crossing.n1 / crossing.n2
+                }
+                (MaterialKind::Glass { ior }, _, GlassBlend::Add) => sheet_eta(entering, ior),
+                _ => 1.0,
+            };
+        }
+        found
+    }
+
+    fn mirror(&mut self, id: u32, node: &Node, spot: Spot<'_>) -> f32 {
+        let scene = self.scene;
+        let rules = &scene.rules;
+        let material = scene.material(node.hit.tri);
         // 1. The reflected share: all of it at an ideal mirror and where the paper's program does not ask.
-        let share = match (rules.mirror_blend, ior) {
-            (MirrorBlend::Physical, Some(ior)) => {
-                reflectance(rules.fresnel, meeting.cos(), self.media.ior(node.media) / f64::from(ior))
-            }
-            (MirrorBlend::Add, Some(ior)) => reflectance(rules.fresnel, meeting.cos(), meeting.sheet_eta(ior)),
-            _ => 1.0,
-        };
-        let factor = self.scene.material(node.hit.tri).tint * share as f32;
+        let asks = matches!(material.kind, MaterialKind::Mirror { ior: Some(_) }) && rules.mirror_blend != MirrorBlend::Replace;
+        let share = if asks { spot.bends.share[spot.k] } else { 1.0 };
+        let factor = material.tint * share as f32;
         if self.is_cut(node, factor) {
             return 1.0;
         }
         // 2. The direction.
-        let direction = match mistaken {
-            Some(_) => Some(meeting.mistaken_reflection()).map(|d| (d, meeting.at.side_of(meeting.corners, d))),
-            None => self.on_side(&meeting, reflect(meeting.d, meeting.n), -meeting.to_side),
+        let direction = if rules.reflect_last_light && !scene.lights.is_empty() {
+            let direction = spot.mistaken_reflection();
+            Some((direction, side_of(scene.tris.position(node.hit.tri), direction)))
+        } else {
+            self.reflected(spot)
         };
         let branch = Branch { parent: id, kind: RayKind::Mirror, ray: node.ray, factor, media: node.media };
-        let goes_on = self.emit(node, &meeting, direction, branch);
+        let goes_on = self.emit(node, spot, direction, branch);
         // 3. What is left of the local colour. Under Replace a miss will bring it back.
         match rules.mirror_blend {
             MirrorBlend::Physical => (1.0 - share) as f32,
@@ -111,74 +173,58 @@ impl<'a> Bouncer<'a> {
         }
     }
 
-    fn glass(&mut self, id: u32, node: &Node, point: &'a SurfacePoint, ior: f32) -> f32 {
-        let rules = &self.scene.rules;
-        let meeting = self.meet(node, point, None);
-        // 1. From which medium to which, and how much is reflected.
-        let (eta, after, unmatched, share) = match rules.glass_blend {
-            GlassBlend::Physical => {
-                let medium = self.scene.tris.material(node.hit.tri);
-                let crossing = self.media.cross(node.media, medium, f64::from(ior), meeting.entering);
-                let eta = crossing.n1 / crossing.n2;
-                (eta, crossing.after, crossing.unmatched, reflectance(rules.fresnel, meeting.cos(), eta) as f32)
-            }
-            GlassBlend::Add => (meeting.sheet_eta(ior), node.media, false, 0.0),
+    fn glass(&mut self, id: u32, node: &Node, spot: Spot<'_>, eta: f64, after: Media, unmatched: bool) -> f32 {
+        let scene = self.scene;
+        // 1. How much is reflected, and how much goes through?
+        let share = match scene.rules.glass_blend {
+            GlassBlend::Physical => spot.bends.share[spot.k] as f32,
+            GlassBlend::Add => 0.0,
         };
-        let refracted = refract(meeting.d, meeting.n, eta);
-        let through = if refracted.is_some() { self.scene.material(node.hit.tri).tint * (1.0 - share) } else { GzColor::ZERO };
+        let passes = spot.bends.total >> spot.k & 1 == 0;
+        let through = if passes { scene.material(node.hit.tri).tint * (1.0 - share) } else { GzColor::ZERO };
         if self.is_cut(node, through + share) {
             return 1.0;
         }
         self.stats.unmatched_exits += u64::from(unmatched);
-        self.stats.total_reflections += u64::from(refracted.is_none());
+        self.stats.total_reflections += u64::from(!passes);
         // 2. The reflected branch stays in its medium, the refracted one changes it.
         let branch = Branch { parent: id, kind: RayKind::Glass, ray: node.ray, factor: GzColor::splat(share), media: node.media };
         if share > 0.0 {
-            let direction = self.on_side(&meeting, reflect(meeting.d, meeting.n), -meeting.to_side);
-            self.emit(node, &meeting, direction, branch);
+            let direction = self.reflected(spot);
+            self.emit(node, spot, direction, branch);
         }
-        if let Some(refracted) = refracted {
-            let direction = self.on_side(&meeting, refracted, meeting.to_side);
-            self.emit(node, &meeting, direction, Branch { factor: through, media: after, ..branch });
+        if passes {
+            let (bent, to_side) = (spot.bends.refracted.lane(spot.k, &scene.tris, spot.hits), spot.to_side());
+            let direction = self.on_side(spot, bent, to_side, |d, n| refract(d, n, eta).unwrap_or(d));
+            self.emit(node, spot, direction, Branch { factor: through, media: after, ..branch });
         }
         1.0
     }
 
-    /// The geometry of a hit at `at` as mirrors and glass see it: by the node's ray, or one along another direction that it is mistaken for.
-    ///
-    /// With geometric sides the triangle itself says where the ray comes from and whether that is outside; the shading normal, taken
-    /// on that side, only bends directions. Where it leans away from the ray all the same (at the silhouette of a coarse mesh) it is
-    /// brought back to where the ray grazes it: there all is reflected, as it is in the limit.
-    fn meet(&self, node: &Node, at: &'a SurfacePoint, mistaken: Option<GzCoord>) -> Meeting<'a> {
-        let tris = &self.scene.tris;
-        let tri = node.hit.tri;
-        let corners = tris.position(tri);
-        let d = mistaken.unwrap_or(node.ray.direction).as_dvec3().normalize_or_zero();
-        let n = normal(tris, self.needs, tri, at, self.scene.material(tri).interpolate, at.weights);
-        let to_side = mistaken.map_or(at.to_side, |direction| at.side_of(corners, direction));
-        if !self.scene.rules.geometric_sides {
-            let entering = d.dot(n) < 0.0;
-            return Meeting { at, corners, d, n: if entering { n } else { -n }, to_side, entering };
-        }
-        let entering = outside(tris, self.needs, tri, at) != to_side;
-        let n = if entering { n } else { -n };
-        let slope = d.dot(n);
-        let n = if slope <= 0.0 { n } else { (n - d * slope).try_normalize().unwrap_or_else(|| at.normal * -f64::from(to_side)) };
-        Meeting { at, corners, d, n, to_side, entering }
+    /// Where light is reflected to, and the side of the triangle that that is.
+    fn reflected(&mut self, spot: Spot<'_>) -> Option<(GzCoord, i8)> {
+        let bent = spot.bends.reflected.lane(spot.k, &self.scene.tris, spot.hits);
+        self.on_side(spot, bent, -spot.to_side(), reflect)
     }
 
-    /// `direction` in f32 if it leads to `side` of the triangle; else mirrored at the triangle's plane and counted, which is the
-    /// same direction in the limit. `None` if that lies in the plane. Without geometric sides any direction will do. Beside it the
-    /// side that it leads to.
-    fn on_side(&mut self, meeting: &Meeting<'_>, direction: DVec3, side: i8) -> Option<(GzCoord, i8)> {
-        let rounded = direction.as_vec3();
-        let leads_to = meeting.at.side_of(meeting.corners, rounded);
-        if !self.scene.rules.geometric_sides || leads_to == side {
-            return Some((rounded, leads_to));
+    /// The direction `bent` if it leads to `side` of the triangle; else mirrored at the triangle's plane and counted, which is the same
+    /// direction in the limit. `None` if that lies in the plane. Without geometric sides any direction will do. Beside it the side that it
+    /// leads to. `bend` makes the direction in f64 from those of the ray and the normal.
+    fn on_side(
+        &mut self,
+        spot: Spot<'_>,
+        bent: (GzCoord, i8),
+        side: i8,
+        bend: impl Fn(DVec3, DVec3) -> DVec3,
+    ) -> Option<(GzCoord, i8)> {
+        if !self.scene.rules.geometric_sides || bent.1 == side {
+            return Some(bent);
         }
         self.stats.below_surface += 1;
-        let mirrored = reflect(direction, meeting.at.normal).as_vec3();
-        (meeting.at.side_of(meeting.corners, mirrored) == side).then_some((mirrored, side))
+        let (d, n) = spot.directions();
+        let mirrored = reflect(bend(d, n), vector(&spot.hits.at.normal, spot.k)).as_vec3();
+        let corners = self.scene.tris.position(spot.hits.tris[spot.k]);
+        (side_of(corners, mirrored) == side).then_some((mirrored, side))
     }
 
     /// The direction to the last light, which the mistake behind the paper's refraction figure takes for the ray's own.
@@ -188,15 +234,18 @@ impl<'a> Bouncer<'a> {
 
     /// Adds `branch` along `direction`, with the side that it leads to, unless it weighs too little or has no way to go; returns whether it
     /// was added.
-    fn emit(&mut self, node: &Node, meeting: &Meeting<'_>, direction: Option<(GzCoord, i8)>, branch: Branch) -> bool {
+    fn emit(&mut self, node: &Node, spot: Spot<'_>, direction: Option<(GzCoord, i8)>, branch: Branch) -> bool {
         let weight = (node.weight * branch.factor).max_element();
         if weight < LEAST_WEIGHT {
             self.stats.weak_branches += u64::from(weight > 0.0);
             self.stats.weak_weight = self.stats.weak_weight.saturating_add(FrameStats::units(weight));
             return false;
         }
-        let policy = self.scene.rules.leave;
-        let Some(ray) = direction.and_then(|(d, side)| policy.leave_at(meeting.corners, meeting.at, d, side)) else {
+        let (policy, at) = (self.scene.rules.leave, &spot.hits.at);
+        let corners = self.scene.tris.position(node.hit.tri);
+        let leave =
+            |(d, side)| policy.leave_from(at.start(spot.k, side), corners, at.weights.map(|row| row[spot.k]), d);
+        let Some(ray) = direction.and_then(leave) else {
             self.stats.absorbed += 1;
             return false;
         };

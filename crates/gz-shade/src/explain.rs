@@ -1,11 +1,13 @@
 //! One pixel, taken apart: every ray that had a part in its colour.
 
 use crate::frame::{ShadeScratch, samples_of, trace_and_shade};
-use crate::local::{Item, Lit, casts_shadow_rays};
+use crate::hits::EightHits;
+use crate::item::{Item, Lit};
+use crate::local::casts_shadow_rays;
 use crate::shadow::{ShadowRay, look};
 use crate::tree::{NO_PARENT, Node, RayKind};
 use crate::{FrameStats, Scene, SceneNeeds, Surface};
-use gz_core::{GzColor, GzRay, Hit, RayQuery, SurfacePoint, Tile};
+use gz_core::{GzColor, GzRay, Hit, RayQuery, Tile};
 
 /// Why a light adds to a hit what it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,8 +82,10 @@ pub fn explain_pixel(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, i: 
         trace_and_shade(scene, needs, query, &tile, it.offset, &mut scratch, &mut stats);
         let first = list.len();
         let tree = scratch.tree();
-        list.extend(tree.nodes.iter().zip(&tree.points).map(|(node, point)| {
-            let (ambient, lights) = parts(scene, needs, query, node, point);
+        let mut hits = tree.hits.iter().flat_map(|hits| (0..hits.count).map(move |k| (hits, k)));
+        list.extend(tree.nodes.iter().map(|node| {
+            let hit = if node.hit.is_hit() { hits.next() } else { None };
+            let (ambient, lights) = parts(scene, needs, query, node, hit);
             ExplainNode {
                 sample,
                 sample_weight: it.weight,
@@ -102,15 +106,19 @@ pub fn explain_pixel(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, i: 
     list
 }
 
-/// The parts of the local colour of `node`: by ambient light, and by each light.
-fn parts(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, node: &Node, point: &SurfacePoint) -> (GzColor, Vec<LightPart>) {
-    let shaded = node.hit.is_hit() && node.keep != 0.0 && scene.material(node.hit.tri).surface == Surface::Shaded;
-    if !shaded {
-        return (GzColor::ZERO, Vec::new());
-    }
-    let item = Item::of(scene, needs, 0, node, point);
+/// The parts of the local colour of `node`, whose ray has the hit `hit` if any: by ambient light, and by each light.
+fn parts(
+    scene: &Scene,
+    needs: SceneNeeds,
+    query: &dyn RayQuery,
+    node: &Node,
+    hit: Option<(&EightHits, usize)>,
+) -> (GzColor, Vec<LightPart>) {
+    let shaded = |(hits, k): &(&EightHits, usize)| node.keep != 0.0 && scene.material(hits.tris[*k]).surface == Surface::Shaded;
+    let Some((hits, k)) = hit.filter(shaded) else { return (GzColor::ZERO, Vec::new()) };
+    let item = Item::of(scene, needs, node, hits, k);
     let part = |(light, it)| {
-        let (color, sight) = match item.lit_by(scene, needs, it, casts_shadow_rays(scene, needs)) {
+        let (color, sight) = match item.lit_by(scene, needs, (hits, k), it, casts_shadow_rays(scene, needs)) {
             Lit::Behind => (GzColor::ZERO, Sight::Behind),
             Lit::Nothing => (GzColor::ZERO, Sight::Nothing),
             Lit::InPlane => (GzColor::ZERO, Sight::InPlane),

@@ -145,7 +145,7 @@ pub(crate) fn trace_and_shade(
         for (id, pixel) in part.clone().enumerate() {
             tree.nodes.push(Node::root(id as u32, rays.ray(pixel), hits[pixel]));
         }
-        tree.meet(scene);
+        tree.meet(scene, needs);
         // Mirror and glass rays: the branches.
         let mut counted = FrameStats::default();
         if tree.grow(scene, needs, query, &mut counted) == Err(TooLarge) {

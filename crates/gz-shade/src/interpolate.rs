@@ -4,6 +4,9 @@ use crate::{Interpolate, SceneNeeds};
 use glam::DVec3;
 use gz_core::{GzColor, GzCoord, GzTextureIndex, SurfacePoint, TriBuffer, TriId};
 
+/// Corner normals are unit vectors of f32: what cancels to below 1e-6 of their length, squared here, is rounding, without a direction.
+pub(crate) const LEAST_SQUARE: f64 = 1e-12;
+
 /// The side of a triangle that is outside: 1 where the normal of the winding points, -1 on the other.
 ///
 /// Outside is where the corner normals point, or the winding where there are none: course data does not wind consistently. `at` is a point
@@ -35,8 +38,7 @@ pub(crate) fn normal(
         (Interpolate::Gouraud | Interpolate::Phong, Some(normals)) => {
             let [a, b, c] = normals.map(|n| n.as_dvec3());
             let sum = a * weights[0] + b * weights[1] + c * weights[2];
-            // Unit normals are f32: what cancels to below 1e-6 of their length is rounding, without a direction.
-            if sum.length_squared() > 1e-12 { sum.normalize() } else { flat_normal(tris, needs, tri, at) }
+            if sum.length_squared() > LEAST_SQUARE { sum.normalize() } else { flat_normal(tris, needs, tri, at) }
         }
         _ => flat_normal(tris, needs, tri, at),
     }
@@ -63,7 +65,7 @@ pub(crate) fn uv(tris: &TriBuffer, tri: TriId, weights: [f64; 3]) -> GzTextureIn
 }
 
 /// Normals that the scene needs and the buffer keeps.
-fn corner_normals(tris: &TriBuffer, needs: SceneNeeds, tri: TriId) -> Option<&[GzCoord; 3]> {
+pub(crate) fn corner_normals(tris: &TriBuffer, needs: SceneNeeds, tri: TriId) -> Option<&[GzCoord; 3]> {
     tris.normals(tri).filter(|_| needs.smooth_normals)
 }
 

@@ -7,13 +7,18 @@
 #![forbid(unsafe_code)]
 
 mod aa;
+mod bend;
 mod bounce;
 pub mod color;
 mod crowd;
+mod eight;
 mod explain;
 mod frame;
+mod hits;
 mod interpolate;
+mod item;
 mod light;
+mod lit;
 mod local;
 mod material;
 mod media;

@@ -2,11 +2,12 @@
 
 use crate::bounce::{Bouncer, Branch};
 use crate::crowd::Crowd;
+use crate::hits::EightHits;
 use crate::media::{Media, MediaStacks};
 use crate::source::closest_hits;
 use crate::{FrameStats, GlassBlend, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
-use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, SimdLevel, SurfacePoint, TriId};
+use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TriId};
 
 /// What kind of ray it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,30 +79,45 @@ impl Node {
 #[derive(Debug, Default)]
 pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
-    /// Where each node's ray hits.
-    pub(crate) points: Vec<SurfacePoint>,
+    /// Where the rays of the nodes hit, in the order of the nodes.
+    pub(crate) hits: Vec<EightHits>,
+    /// How many nodes have been looked at for that.
+    met: usize,
     media: MediaStacks,
     branches: Vec<Branch>,
     crowd: Crowd,
     origins: Vec<DVec3>,
     directions: Vec<GzCoord>,
     leaves: Vec<TriId>,
-    hits: Vec<Hit>,
+    answers: Vec<Hit>,
 }
 
 impl Tree {
     /// Forgets all nodes.
     pub(crate) fn clear(&mut self) {
         self.nodes.clear();
-        self.points.clear();
+        self.hits.clear();
+        self.met = 0;
         self.media.clear();
     }
 
-    /// Finds where the rays of the nodes added last hit: of all that have no point yet.
-    pub(crate) fn meet(&mut self, scene: &Scene) {
-        let hits = self.nodes[self.points.len()..].iter().map(|node| node.hit.is_hit().then_some((node.ray, node.hit.tri)));
-        let leaving = scene.rules.leave.needs_starts() && scene.has_secondary_rays();
-        SurfacePoint::of_hits(&scene.tris, hits, leaving, SimdLevel::best(), &mut self.points);
+    /// Finds where the rays of the nodes added last hit: of all that have not been looked at.
+    pub(crate) fn meet(&mut self, scene: &Scene, needs: SceneNeeds) {
+        let (mut ids, mut count) = ([0; 8], 0);
+        for id in self.met..self.nodes.len() {
+            if self.nodes[id].hit.is_hit() {
+                ids[count] = id as u32;
+                count += 1;
+            }
+            if count == 8 {
+                self.hits.push(EightHits::of(scene, needs, &self.nodes, &ids));
+                count = 0;
+            }
+        }
+        if count > 0 {
+            self.hits.push(EightHits::of(scene, needs, &self.nodes, &ids[..count]));
+        }
+        self.met = self.nodes.len();
     }
 
     /// Follows mirror and glass rays, level by level, from the roots; each kind of a level is one batch. With a depth limit of 0 no
@@ -123,32 +139,31 @@ impl Tree {
             return Ok(());
         }
         let roots = self.nodes.len();
-        let mut level = 0..roots;
+        let mut level = 0..self.hits.len();
         while !level.is_empty() {
             // 1. Where do the hits of this level go on?
             self.branches.clear();
             let (media, branches) = (&mut self.media, &mut self.branches);
             let mut bouncer = Bouncer { scene, needs, media, branches, stats };
-            for id in level.clone() {
-                if self.nodes[id].hit.is_hit() {
-                    self.nodes[id].keep = bouncer.bounce(id as u32, &self.nodes[id], &self.points[id]);
-                }
+            for hits in &self.hits[level] {
+                bouncer.bounce(hits, &mut self.nodes);
             }
             // 2. The heaviest of those rays are the next level.
             self.crowd.thin(&mut self.branches, &mut self.nodes, scene.rules.mirror_blend, stats);
             if roots > 1 && self.nodes.len() + self.branches.len() > MAX_NODES {
                 return Err(TooLarge);
             }
-            level = self.nodes.len()..self.nodes.len();
+            let first = self.hits.len();
             for kind in [RayKind::Mirror, RayKind::Glass] {
-                level.end += self.trace(kind, scene, query, stats);
+                self.trace(kind, scene, needs, query, stats);
             }
+            level = first..self.hits.len();
         }
         Ok(())
     }
 
-    /// Traces the branches of one kind as a batch and adds them as nodes; returns how many there are.
-    fn trace(&mut self, kind: RayKind, scene: &Scene, query: &dyn RayQuery, stats: &mut FrameStats) -> usize {
+    /// Traces the branches of one kind as a batch and adds them as nodes.
+    fn trace(&mut self, kind: RayKind, scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, stats: &mut FrameStats) {
         let first = self.nodes.len();
         self.origins.clear();
         self.directions.clear();
@@ -170,15 +185,15 @@ impl Tree {
         }
         let count = self.nodes.len() - first;
         if count == 0 {
-            return 0;
+            return;
         }
         let (tmin, tmax) = (PerRay::One(scene.rules.leave.tmin()), PerRay::One(f32::INFINITY));
         let rays = RayBatch::new(count, PerRay::Each(&self.origins), PerRay::Each(&self.directions), tmin, tmax);
         let rays = rays.leaving(&self.leaves);
-        self.hits.clear();
-        self.hits.resize(count, Hit::MISS);
-        closest_hits(query, scene.rules.leave, &rays, ClassMask::ALL, &mut self.hits);
-        for (id, &hit) in (first..).zip(&self.hits) {
+        self.answers.clear();
+        self.answers.resize(count, Hit::MISS);
+        closest_hits(query, scene.rules.leave, &rays, ClassMask::ALL, &mut self.answers);
+        for (id, &hit) in (first..).zip(&self.answers) {
             self.nodes[id].hit = hit;
             stats.secondary_hits += u64::from(hit.is_hit());
             if !hit.is_hit() && kind == RayKind::Mirror && scene.rules.mirror_blend == MirrorBlend::Replace {
@@ -187,12 +202,11 @@ impl Tree {
                 self.nodes[parent].keep = 1.0;
             }
         }
-        self.meet(scene);
+        self.meet(scene, needs);
         match kind {
             RayKind::Mirror => stats.mirror_rays += count as u64,
             _ => stats.glass_rays += count as u64,
         }
-        count
     }
 
     /// What rays that hit nothing show: the background where colours blend as in physics, else a secondary ray adds nothing.

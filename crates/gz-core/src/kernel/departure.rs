@@ -6,16 +6,14 @@ use super::answer::{EightPairs, NearWeights, WEIGHT_ERROR};
 use super::height::Plane;
 use super::leaving::{Leaving, combine};
 use super::solution::{Bounded, Solution};
-use super::together::of_lane;
 use crate::ray::LEAST_ORIGIN;
 use crate::simd::{Doubles, EightDoubles, Simd, Task};
-use crate::surface::SurfacePoint;
-use crate::{GzCoord, GzRay};
+use crate::{EightPoints, GzCoord, GzRay};
 
-/// The points where rays have hit triangles, as [`SurfacePoint::of`] has them; with places to leave from if `leaving`.
-pub(crate) struct EightPoints<'p> {
+/// The points where rays have hit triangles, as [`crate::SurfacePoint::of`] has them; with places to leave from if `leaving`.
+pub(crate) struct FindPoints<'p> {
     pub(crate) rays: &'p [GzRay; 8],
-    pub(crate) corners: [&'p [GzCoord; 3]; 8],
+    pub(crate) corners: &'p [&'p [GzCoord; 3]; 8],
     pub(crate) leaving: bool,
 }
 
@@ -25,9 +23,9 @@ const STEPS: usize = 3;
 /// All lanes.
 const ALL: u32 = 0xff;
 
-impl Task for EightPoints<'_> {
+impl Task for FindPoints<'_> {
     /// The points, and a bit for each of which f64 has decided all.
-    type Output = ([SurfacePoint; 8], u32);
+    type Output = (EightPoints, u32);
 
     #[inline(always)]
     fn run<S: Simd>(self) -> Self::Output {
@@ -36,7 +34,7 @@ impl Task for EightPoints<'_> {
             origins[k] = self.rays[k].origin.to_array();
             directions[k] = self.rays[k].direction.to_array();
         }
-        let pairs = EightPairs::<S>::of(&origins, &directions, self.corners);
+        let pairs = EightPairs::<S>::of(&origins, &directions, *self.corners);
         let corners = pairs.wide_corners();
 
         let solution = Solution::of(pairs.origin, pairs.direction, &corners);
@@ -53,15 +51,22 @@ impl Task for EightPoints<'_> {
         if self.leaving {
             settled &= step_off(&Leaving::of(plane, &corners, weights), &mut starts);
         }
-        let rows = Rows {
+        let mut to_side = [-1; 8];
+        for k in 0..8 {
+            if up >> k & 1 != 0 {
+                to_side[k] = 1;
+            }
+        }
+        let points = EightPoints {
             weights: arrays(weights),
             point: arrays(point),
+            to_side,
             normal: arrays(normal),
             lean: lean.array(),
-            up,
             starts: [arrays(starts[0]), arrays(starts[1])],
+            leaving: if self.leaving { ALL } else { 0 },
         };
-        (rows.points(self.leaving), settled & ALL)
+        (points, settled & ALL)
     }
 }
 
@@ -137,36 +142,4 @@ fn without_tiny<D: EightDoubles>(x: D) -> D {
 #[inline(always)]
 fn arrays<D: EightDoubles>(x: [D; 3]) -> [[f64; 8]; 3] {
     [x[0].array(), x[1].array(), x[2].array()]
-}
-
-/// Eight points, number by number.
-struct Rows {
-    weights: [[f64; 8]; 3],
-    point: [[f64; 8]; 3],
-    normal: [[f64; 8]; 3],
-    lean: [f64; 8],
-    up: u32,
-    starts: [[[f64; 8]; 3]; 2],
-}
-
-impl Rows {
-    #[inline(always)]
-    fn points(&self, leaving: bool) -> [SurfacePoint; 8] {
-        let mut points = [SurfacePoint::NOWHERE; 8];
-        for k in 0..8 {
-            points[k] = SurfacePoint {
-                weights: of_lane(&self.weights, k),
-                point: of_lane(&self.point, k).into(),
-                to_side: if self.up >> k & 1 != 0 { 1 } else { -1 },
-                normal: of_lane(&self.normal, k).into(),
-                lean: self.lean[k],
-                starts: if leaving {
-                    Some([of_lane(&self.starts[0], k).into(), of_lane(&self.starts[1], k).into()])
-                } else {
-                    None
-                },
-            };
-        }
-        points
-    }
 }

@@ -1,0 +1,211 @@
+//! How a light meets eight hits at a time: the shading equation of [`light_share`] and the sides that shadow rays go to.
+//!
+//! [`light_share`]: crate::phong::light_share
+
+use crate::eight::{Rows, dot, lanes, load, minus, set, signs, times, unit_range, vector, widen};
+use crate::hits::EightHits;
+use crate::item::Item;
+use crate::phong::power;
+use crate::{Arrival, GzLight, LightKind};
+use glam::DVec3;
+use gz_core::GzColor;
+use gz_core::simd::{Doubles, EightDoubles, Lanes, Simd, Task, load3, splat3};
+
+/// Eight lanes of a colour, a row for each channel.
+type Colors = [[f32; 8]; 3];
+
+/// Items among eight hits, as rows of what lights ask of them.
+#[derive(Debug)]
+pub(crate) struct EightItems {
+    /// Which of the tree's hits they are.
+    pub(crate) hits: usize,
+    /// The number of the first item; the others follow.
+    pub(crate) first: usize,
+    /// The lanes that are items.
+    pub(crate) lanes: u32,
+    /// Those that are shaded at the corners, and so one by one.
+    at_corners: u32,
+    /// The lanes whose viewer is on side 1 of the triangle, and on side -1; others are lit from both sides.
+    viewers: [u32; 2],
+    n: Rows,
+    e: Rows,
+    kd: Colors,
+    ks: Colors,
+    /// The lanes that have highlights, and their powers.
+    shiny: u32,
+    power: [f32; 8],
+}
+
+impl EightItems {
+    /// None yet of hits number `hits`; the first will be item number `first`.
+    pub(crate) fn new(hits: usize, first: usize) -> Self {
+        let (rows, colors) = ([[0.0; 8]; 3], [[0.0; 8]; 3]);
+        let (kd, ks, power) = (colors, colors, [0.0; 8]);
+        Self { hits, first, lanes: 0, at_corners: 0, viewers: [0; 2], n: rows, e: rows, kd, ks, shiny: 0, power }
+    }
+
+    /// Adds hit number `k`.
+    pub(crate) fn add(&mut self, k: usize, item: &Item) {
+        self.lanes |= 1 << k;
+        self.at_corners |= u32::from(item.at_corners) << k;
+        self.viewers[0] |= u32::from(item.viewer == 1) << k;
+        self.viewers[1] |= u32::from(item.viewer == -1) << k;
+        set(&mut self.n, k, item.n);
+        set(&mut self.e, k, item.e);
+        for channel in 0..3 {
+            self.kd[channel][k] = item.k.kd[channel];
+            self.ks[channel][k] = item.k.ks[channel];
+        }
+        self.shiny |= u32::from(item.k.ks != GzColor::ZERO) << k;
+        self.power[k] = item.k.power;
+    }
+
+    /// How `light` meets them.
+    #[inline(always)]
+    fn lit_by<S: Simd>(&self, hits: &EightHits, light: &GzLight, casting: bool) -> EightLit {
+        let arrivals = Arrivals::<S>::of(light, hits);
+        let mut lit = EightLit { color: [[0.0; 8]; 3], up: 0, dark: 0, open: self.at_corners };
+        // 1. Is the light on the viewer's side of the triangle?
+        let seen_from = self.viewers[0] | self.viewers[1];
+        if casting || seen_from != 0 {
+            let (up, down) = hits.at.sides(&arrivals.direction);
+            lit.open |= !(up | down) & if casting { self.lanes } else { seen_from };
+            lit.up = up;
+            lit.dark = self.viewers[0] & down | self.viewers[1] & up;
+        }
+        // 2. Diffuse light, on the side of the normal that both light and viewer are on.
+        let zero = <S::Doubles>::splat(0.0);
+        let (n, l, e) = (load::<S::Doubles>(&self.n), arrivals.to_light, load::<S::Doubles>(&self.e));
+        let (nl, ne) = (dot(&n, &l), dot(&n, &e));
+        let front = zero.at_most(nl) & zero.at_most(ne);
+        let back = nl.at_most(zero) & ne.at_most(zero);
+        let turned = signs::<S::Doubles>(front);
+        let (n, nl) = (times(&n, turned), nl.times(turned));
+        let diffuse = S::narrow(nl);
+        let mut color = [diffuse; 3];
+        for channel in 0..3 {
+            color[channel] = <S::Eight>::load(&self.kd[channel]).times(diffuse);
+        }
+        // 3. Highlights.
+        let shiny = self.shiny & self.lanes & (front | back) & !lit.dark;
+        if shiny != 0 {
+            let r = minus(&times(&n, <S::Doubles>::splat(2.0).times(nl)), &l);
+            let highlight = S::narrow(powers(unit_range(dot(&r, &e)), &self.power, shiny));
+            for channel in 0..3 {
+                let with = color[channel].plus(<S::Eight>::load(&self.ks[channel]).times(highlight));
+                color[channel] = with.select(self.shiny, color[channel]);
+            }
+        }
+        // 4. In the light's colour.
+        let (none, mut nothing) = (<S::Eight>::splat(0.0), !0);
+        for channel in 0..3 {
+            let light = color[channel].select(front | back, none).times(arrivals.color[channel]);
+            nothing &= light.at_most(none) & none.at_most(light);
+            lit.color[channel] = light.array();
+        }
+        lit.dark |= nothing;
+        lit
+    }
+}
+
+/// How a light reaches eight points.
+struct Arrivals<S: Simd> {
+    to_light: [S::Doubles; 3],
+    direction: [S::Doubles; 3],
+    color: [S::Eight; 3],
+}
+
+impl<S: Simd> Arrivals<S> {
+    #[inline(always)]
+    fn of(light: &GzLight, hits: &EightHits) -> Self {
+        if let LightKind::Directional(to_light) = light.kind {
+            let [x, y, z] = to_light.to_array();
+            let to_light = [<S::Doubles>::splat(x), <S::Doubles>::splat(y), <S::Doubles>::splat(z)];
+            let direction = widen::<S>(&splat3(light.arrive(DVec3::ZERO).direction.to_array()));
+            return Self { to_light, direction, color: splat3(light.color.to_array()) };
+        }
+        let (mut to_light, mut direction, mut color) = ([[0.0; 8]; 3], [[0.0; 8]; 3], [[0.0; 8]; 3]);
+        for k in 0..8 {
+            let Arrival { to_light: l, direction: d, color: c, .. } = light.arrive(vector(&hits.at.point, k));
+            set(&mut to_light, k, l);
+            (direction[0][k], direction[1][k], direction[2][k]) = (d.x, d.y, d.z);
+            (color[0][k], color[1][k], color[2][k]) = (c.x, c.y, c.z);
+        }
+        Self { to_light: load(&to_light), direction: widen::<S>(&load3(&direction)), color: load3(&color) }
+    }
+}
+
+/// `base`, in [0, 1], to the `powers`, as [`power`] has it, in `wanted` lanes.
+#[inline(always)]
+fn powers<D: EightDoubles>(base: D, powers: &[f32; 8], wanted: u32) -> D {
+    // Whole powers of fewer than 16 bits by repeated squaring, all lanes in step.
+    let (mut bits, mut whole) = ([0; 8], 0);
+    for k in 0..8 {
+        bits[k] = powers[k] as u16;
+        whole |= u32::from(f32::from(bits[k]) == powers[k]) << k;
+    }
+    if wanted & !whole != 0 {
+        let mut each = base.array();
+        for k in lanes(wanted) {
+            each[k] = power(each[k], powers[k]);
+        }
+        return D::load(&each);
+    }
+    let (mut result, mut square) = (D::splat(1.0), base);
+    loop {
+        let (mut odd, mut rest) = (0, 0);
+        for k in 0..8 {
+            odd |= u32::from(bits[k] & 1) << k;
+            bits[k] >>= 1;
+            rest |= bits[k];
+        }
+        result = result.times(square).select(odd, result);
+        if rest == 0 {
+            return result;
+        }
+        square = square.times(square);
+    }
+}
+
+/// How one light meets eight items, before anything in the way is asked for.
+#[derive(Debug)]
+pub(crate) struct EightLit {
+    /// What it adds.
+    color: Colors,
+    /// The lanes from which the light is on side 1 of the triangle.
+    pub(crate) up: u32,
+    /// The lanes to which it adds nothing.
+    pub(crate) dark: u32,
+    /// The lanes that have to be asked by themselves: [`Item::lit_by`]. What else is said of them does not hold.
+    pub(crate) open: u32,
+}
+
+impl EightLit {
+    /// What it adds to lane `k`.
+    pub(crate) fn color(&self, k: usize) -> GzColor {
+        GzColor::new(self.color[0][k], self.color[1][k], self.color[2][k])
+    }
+}
+
+/// One light and all items of a tree.
+pub(crate) struct LightAll<'a> {
+    pub(crate) items: &'a [EightItems],
+    pub(crate) hits: &'a [EightHits],
+    pub(crate) light: &'a GzLight,
+    /// Whether shadow rays are cast.
+    pub(crate) casting: bool,
+    /// How the light meets each of `items`.
+    pub(crate) lit: &'a mut Vec<EightLit>,
+}
+
+impl Task for LightAll<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        self.lit.clear();
+        for items in self.items {
+            self.lit.push(items.lit_by::<S>(&self.hits[items.hits], self.light, self.casting));
+        }
+    }
+}
