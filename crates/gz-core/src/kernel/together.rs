@@ -212,10 +212,13 @@ impl RayBundle {
     /// Volumes of the rays of packet `p` and triangle `k` of a group.
     #[inline(always)]
     fn lines<S: Simd>(&self, group: &TriGroup, prepared: &Prepared, k: usize, p: usize) -> Lines<S::Sixteen> {
-        let d = packet_of::<S::Sixteen>(&self.direction, p);
-        let mut v = dot(d, splat3(of_lane(&prepared.p, k)));
-        let mut w = dot(d, splat3(of_lane(&prepared.q, k)));
-        let along = dot(d, splat3(of_lane(&prepared.normal, k)));
+        let [mut v, mut w, along] = if self.common_direction {
+            splat3(of_lane(&prepared.of_direction, k))
+        } else {
+            let d = packet_of::<S::Sixteen>(&self.direction, p);
+            let [v, w, along] = [&prepared.p, &prepared.q, &prepared.normal];
+            [dot(d, splat3(of_lane(v, k))), dot(d, splat3(of_lane(w, k))), dot(d, splat3(of_lane(along, k)))]
+        };
         if !self.common_origin {
             let m = packet_of(&self.moment, p);
             v = v.plus(dot(m, splat3(of_lane(&group.e2, k))));
@@ -291,6 +294,8 @@ pub(super) struct Prepared {
     p: [[f32; 8]; 3],
     q: [[f32; 8]; 3],
     normal: [[f32; 8]; 3],
+    /// Their products with the rays' direction, where they have one.
+    of_direction: [[f32; 8]; 3],
     /// A . normal.
     depth: [f32; 8],
     bound: [f32; 8],
@@ -318,12 +323,19 @@ impl Prepared {
             (most, least) = (most.plus(bound_of_all), least.minus(bound_of_all));
         }
         let zero = <S::Eight>::splat(0.0);
+        let mut of_direction = [[0.0; 8]; 3];
+        if bundle.common_direction {
+            let [x, y, z] = &bundle.direction;
+            let d = splat3::<8, S::Eight>([x[0][0], y[0][0], z[0][0]]);
+            of_direction = arrays3([dot(d, p), dot(d, q), dot(d, normal)]);
+        }
         // NaN proves nothing.
         let missed = most.below(zero) & zero.below(least);
         Self {
             p: arrays3(p),
             q: arrays3(q),
             normal: arrays3(normal),
+            of_direction,
             depth: dot(a, normal).array(),
             bound: bound.array(),
             depth_error: bundle.margin.depth(size, away).array(),
