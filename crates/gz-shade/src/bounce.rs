@@ -20,6 +20,8 @@ const LEAST_WEIGHT: f32 = 1.0 / 65536.0;
 pub(crate) struct Branch {
     pub(crate) parent: u32,
     pub(crate) kind: RayKind,
+    /// It goes through the surface.
+    pub(crate) refracted: bool,
     pub(crate) ray: GzRay,
     /// What the parent multiplies the branch's colour by.
     pub(crate) factor: GzColor,
@@ -163,7 +165,7 @@ impl Bouncer<'_> {
         } else {
             self.reflected(spot)
         };
-        let branch = Branch { parent: id, kind: RayKind::Mirror, ray: node.ray, factor, media: node.media };
+        let branch = Branch { parent: id, kind: RayKind::Mirror, refracted: false, ray: node.ray, factor, media: node.media };
         let goes_on = self.emit(node, spot, direction, branch);
         // 3. What is left of the local colour. Under Replace a miss will bring it back.
         match rules.mirror_blend {
@@ -188,7 +190,7 @@ impl Bouncer<'_> {
         self.stats.unmatched_exits += u64::from(unmatched);
         self.stats.total_reflections += u64::from(!passes);
         // 2. The reflected branch stays in its medium, the refracted one changes it.
-        let branch = Branch { parent: id, kind: RayKind::Glass, ray: node.ray, factor: GzColor::splat(share), media: node.media };
+        let branch = Branch { parent: id, kind: RayKind::Glass, refracted: false, ray: node.ray, factor: GzColor::splat(share), media: node.media };
         if share > 0.0 {
             let direction = self.reflected(spot);
             self.emit(node, spot, direction, branch);
@@ -196,7 +198,7 @@ impl Bouncer<'_> {
         if passes {
             let (bent, to_side) = (spot.bends.refracted.lane(spot.k, &scene.tris, spot.hits), spot.to_side());
             let direction = self.on_side(spot, bent, to_side, |d, n| refract(d, n, eta).unwrap_or(d));
-            self.emit(node, spot, direction, Branch { factor: through, media: after, ..branch });
+            self.emit(node, spot, direction, Branch { refracted: true, factor: through, media: after, ..branch });
         }
         1.0
     }

@@ -93,7 +93,7 @@ mod tests {
             for r in (0..counts.len()).filter(|&r| k < counts[r]) {
                 let ray = GzRay::new(GzCoord::splat(k as f32), GzCoord::Z);
                 let factor = GzColor::splat((1 + k % 7) as f32 / 8.0);
-                branches.push(Branch { parent: r as u32, kind: RayKind::Mirror, ray, factor, media: Media::AIR });
+                branches.push(Branch { parent: r as u32, kind: RayKind::Mirror, refracted: false, ray, factor, media: Media::AIR });
             }
         }
         (nodes, branches)

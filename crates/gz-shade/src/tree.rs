@@ -168,7 +168,9 @@ impl Tree {
         self.origins.clear();
         self.directions.clear();
         self.leaves.clear();
-        for branch in self.branches.iter().filter(|branch| branch.kind == kind) {
+        // Reflected rays first, then refracted ones: neighbours go the same way.
+        let some = |refracted| self.branches.iter().filter(move |branch| branch.kind == kind && branch.refracted == refracted);
+        for branch in some(false).chain(some(true)) {
             let parent = &self.nodes[branch.parent as usize];
             self.origins.push(branch.ray.origin);
             self.directions.push(branch.ray.direction);
