@@ -39,28 +39,27 @@ impl LeavePolicy {
     /// Whoever asks about it has to mind [`Self::skips_source`].
     pub fn leave(self, corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoord) -> Option<GzRay> {
         let start = if self.needs_starts() { leave_surface(corners, weights, direction) } else { None };
-        self.leave_from(start, corners, weights, direction)
+        let origin = self.origin(start, corners, weights, direction)?;
+        Some(GzRay { tmin: self.tmin(), ..GzRay::from_f64(origin, direction) })
     }
 
-    /// The same where it is known already where the exact rule has the ray `start`, as [`crate::SurfacePoint::start`] has it.
-    pub fn leave_from(
+    /// Where that ray starts, if it is known already that the exact rule has it start at `start`: see [`crate::SurfacePoint::start`].
+    #[inline]
+    pub fn origin(
         self,
         start: Option<DVec3>,
         corners: &[GzCoord; 3],
         weights: [f64; 3],
         direction: GzCoord,
-    ) -> Option<GzRay> {
+    ) -> Option<DVec3> {
         match self {
-            Self::Exact => Some(self.from(start?, direction)),
-            _ => Some(self.from(self.cured(corners, weights, direction), direction)),
+            Self::Exact => start,
+            _ => Some(self.cured(corners, weights, direction)),
         }
     }
 
-    fn from(self, origin: DVec3, direction: GzCoord) -> GzRay {
-        GzRay { tmin: self.tmin(), ..GzRay::from_f64(origin, direction) }
-    }
-
     /// Where rays start by the rules that are no proof.
+    #[inline(never)]
     fn cured(self, corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoord) -> DVec3 {
         let (point, error) = rounded_point(corners, weights);
         // The least f32 is 2^-149, so that no origin is too small for a ray.

@@ -243,14 +243,12 @@ impl Bouncer<'_> {
             self.stats.weak_weight = self.stats.weak_weight.saturating_add(FrameStats::units(weight));
             return false;
         }
-        let (policy, at) = (self.scene.rules.leave, &spot.hits.at);
-        let corners = self.scene.tris.position(node.hit.tri);
-        let leave =
-            |(d, side)| policy.leave_from(at.start(spot.k, side), corners, at.weights.map(|row| row[spot.k]), d);
-        let Some(ray) = direction.and_then(leave) else {
+        let way = direction.and_then(|(d, side)| Some((spot.hits.origin(self.scene, spot.k, d, side)?, d)));
+        let Some((origin, direction)) = way else {
             self.stats.absorbed += 1;
             return false;
         };
+        let ray = GzRay { tmin: self.scene.rules.leave.tmin(), ..GzRay::from_f64(origin, direction) };
         self.branches.push(Branch { ray, ..branch });
         true
     }

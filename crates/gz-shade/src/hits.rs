@@ -5,7 +5,8 @@ use crate::interpolate::{corner_normals, normal, outside};
 use crate::tree::Node;
 use crate::{Interpolate, Scene, SceneNeeds};
 use gz_core::simd::{Doubles, Lanes, Simd, Task, dispatch, nine};
-use gz_core::{EightPoints, SimdLevel, TriId};
+use glam::DVec3;
+use gz_core::{EightPoints, GzCoord, SimdLevel, TriId};
 
 /// Up to eight hits.
 #[derive(Debug)]
@@ -47,6 +48,13 @@ impl EightHits {
             set(&mut hits.normal, k, n);
         }
         hits
+    }
+
+    /// Where a ray starts that leaves hit `k` along `direction`, to `side` of its triangle; `None` if there is no way out.
+    #[inline]
+    pub(crate) fn origin(&self, scene: &Scene, k: usize, direction: GzCoord, side: i8) -> Option<DVec3> {
+        let (corners, weights) = (scene.tris.position(self.tris[k]), self.at.weights.map(|row| row[k]));
+        scene.rules.leave.origin(self.at.start(k, side), corners, weights, direction)
     }
 }
 

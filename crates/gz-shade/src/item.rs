@@ -8,7 +8,7 @@ use crate::shadow::ShadowRay;
 use crate::tree::Node;
 use crate::{Arrival, Eye, GzLight, Interpolate, Material, Scene, SceneNeeds, Texture};
 use glam::DVec3;
-use gz_core::{GzColor, GzRay, TriId};
+use gz_core::{GzColor, TriId};
 
 /// A hit that is shaded.
 #[derive(Debug)]
@@ -53,12 +53,9 @@ impl Lit {
         casting: Option<(&Arrival, i8)>,
     ) -> Self {
         let Some((arrival, side)) = casting else { return Self::Adds { color, start: None } };
-        let (leaves, weights) = (hits.tris[k], hits.at.weights.map(|row| row[k]));
-        let corners = scene.tris.position(leaves);
-        match scene.rules.leave.leave_from(hits.at.start(k, side), corners, weights, arrival.direction) {
-            Some(GzRay { origin, direction, .. }) => {
-                Self::Adds { color, start: Some(ShadowRay { origin, direction, tmax: arrival.tmax, leaves }) }
-            }
+        let (leaves, direction) = (hits.tris[k], arrival.direction);
+        match hits.origin(scene, k, direction, side) {
+            Some(origin) => Self::Adds { color, start: Some(ShadowRay { origin, direction, tmax: arrival.tmax, leaves }) },
             None => Self::InPlane,
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! [`light_share`]: crate::phong::light_share
 
-use crate::eight::{Rows, dot, lanes, load, minus, set, signs, times, unit_range, vector, widen};
+use crate::eight::{Rows, coord, dot, lanes, load, minus, set, signs, times, unit_range, vector, widen};
 use crate::hits::EightHits;
 use crate::item::Item;
 use crate::phong::power;
@@ -19,12 +19,8 @@ type Colors = [[f32; 8]; 3];
 pub(crate) struct EightItems {
     /// Which of the tree's hits they are.
     pub(crate) hits: usize,
-    /// The number of the first item; the others follow.
-    pub(crate) first: usize,
     /// The lanes that are items.
     pub(crate) lanes: u32,
-    /// Those that are shaded at the corners, and so one by one.
-    at_corners: u32,
     /// The lanes whose viewer is on side 1 of the triangle, and on side -1; others are lit from both sides.
     viewers: [u32; 2],
     n: Rows,
@@ -34,20 +30,22 @@ pub(crate) struct EightItems {
     /// The lanes that have highlights, and their powers.
     shiny: u32,
     power: [f32; 8],
+    /// The equation so far.
+    sum: Colors,
 }
 
 impl EightItems {
-    /// None yet of hits number `hits`; the first will be item number `first`.
-    pub(crate) fn new(hits: usize, first: usize) -> Self {
+    /// None yet of hits number `hits`.
+    pub(crate) fn new(hits: usize) -> Self {
         let (rows, colors) = ([[0.0; 8]; 3], [[0.0; 8]; 3]);
-        let (kd, ks, power) = (colors, colors, [0.0; 8]);
-        Self { hits, first, lanes: 0, at_corners: 0, viewers: [0; 2], n: rows, e: rows, kd, ks, shiny: 0, power }
+        let (kd, ks, power, sum) = (colors, colors, [0.0; 8], colors);
+        Self { hits, lanes: 0, viewers: [0; 2], n: rows, e: rows, kd, ks, shiny: 0, power, sum }
     }
 
-    /// Adds hit number `k`.
+    /// Adds hit number `k`, which is not shaded at the corners.
+    #[inline]
     pub(crate) fn add(&mut self, k: usize, item: &Item) {
         self.lanes |= 1 << k;
-        self.at_corners |= u32::from(item.at_corners) << k;
         self.viewers[0] |= u32::from(item.viewer == 1) << k;
         self.viewers[1] |= u32::from(item.viewer == -1) << k;
         set(&mut self.n, k, item.n);
@@ -55,16 +53,30 @@ impl EightItems {
         for channel in 0..3 {
             self.kd[channel][k] = item.k.kd[channel];
             self.ks[channel][k] = item.k.ks[channel];
+            self.sum[channel][k] = item.sum[0][channel];
         }
         self.shiny |= u32::from(item.k.ks != GzColor::ZERO) << k;
         self.power[k] = item.k.power;
+    }
+
+    /// Adds `color` to the equation of hit `k`.
+    #[inline]
+    pub(crate) fn brighten(&mut self, k: usize, color: GzColor) {
+        for channel in 0..3 {
+            self.sum[channel][k] += color[channel];
+        }
+    }
+
+    /// The equation of hit `k` so far.
+    pub(crate) fn sum(&self, k: usize) -> GzColor {
+        coord(&self.sum, k)
     }
 
     /// How `light` meets them.
     #[inline(always)]
     fn lit_by<S: Simd>(&self, hits: &EightHits, light: &GzLight, casting: bool) -> EightLit {
         let arrivals = Arrivals::<S>::of(light, hits);
-        let mut lit = EightLit { color: [[0.0; 8]; 3], up: 0, dark: 0, open: self.at_corners };
+        let mut lit = EightLit { color: [[0.0; 8]; 3], up: 0, dark: 0, open: 0 };
         // 1. Is the light on the viewer's side of the triangle?
         let seen_from = self.viewers[0] | self.viewers[1];
         if casting || seen_from != 0 {
@@ -183,7 +195,7 @@ pub(crate) struct EightLit {
 impl EightLit {
     /// What it adds to lane `k`.
     pub(crate) fn color(&self, k: usize) -> GzColor {
-        GzColor::new(self.color[0][k], self.color[1][k], self.color[2][k])
+        coord(&self.color, k)
     }
 }
 

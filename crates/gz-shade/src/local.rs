@@ -9,21 +9,26 @@ use crate::{FrameStats, GzLight, LightKind, Scene, SceneNeeds, ShadowRule, Surfa
 use gz_core::simd::dispatch;
 use gz_core::{GzColor, RayQuery, SimdLevel};
 
-/// What one light would add to an item if nothing were in the way.
+/// What one light would add to a hit if nothing were in the way.
 #[derive(Debug)]
 struct Addend {
-    item: u32,
-    color: [GzColor; 3],
+    /// Where among the eights the hit is.
+    eight: u32,
+    k: u32,
+    color: GzColor,
 }
 
 /// Room for the shading of a tile, kept from tile to tile.
 #[derive(Debug, Default)]
 pub(crate) struct Lighting {
-    items: Vec<Item>,
-    /// The same items, eight at a time.
+    /// The hits that are shaded, eight at a time.
     eights: Vec<EightItems>,
     lit: Vec<EightLit>,
     addends: Vec<Addend>,
+    /// Hits that are shaded at the corners: their hits and places there; then what one light would add, by their numbers here.
+    at_corners: Vec<(usize, usize, Item)>,
+    corner_addends: Vec<(usize, [GzColor; 3])>,
+    /// Those of `addends`, then those of `corner_addends`.
     rays: ShadowRays,
     shadows: Shadows,
 }
@@ -44,29 +49,31 @@ impl Lighting {
         let casting = casts_shadow_rays(scene, needs);
         for light in &scene.lights {
             self.gather(scene, needs, tree, light, casting, stats);
-            if casting && !self.addends.is_empty() {
-                stats.shadow_rays += self.addends.len() as u64;
-                let common_direction = matches!(light.kind, LightKind::Directional(_));
-                stats.tint_queries += self.shadows.trace(scene, query, &self.rays, common_direction);
+            if casting && self.rays.len() > 0 {
+                stats.shadow_rays += self.rays.len() as u64;
+                stats.tint_queries += self.shadows.trace(scene, query, &self.rays);
             }
-            for (ray, addend) in self.addends.iter().enumerate() {
-                let share = if casting { self.shadows.shares[ray] } else { GzColor::ONE };
-                let sum = &mut self.items[addend.item as usize].sum;
-                (0..3).for_each(|corner| sum[corner] += addend.color[corner] * share);
-            }
+            self.add(casting);
         }
         // 3. The sums are the colours.
-        for item in &self.items {
-            tree.nodes[item.node as usize].local = item.color(scene.rules.clamp_levels);
+        for eight in &self.eights {
+            for k in lanes(eight.lanes) {
+                let (node, sum) = (tree.hits[eight.hits].nodes[k], eight.sum(k));
+                let clamps = scene.rules.clamp_levels;
+                tree.nodes[node as usize].local = if clamps { sum.clamp(GzColor::ZERO, GzColor::ONE) } else { sum };
+            }
+        }
+        for (hits, k, item) in &self.at_corners {
+            tree.nodes[tree.hits[*hits].nodes[*k] as usize].local = item.color(scene.rules.clamp_levels);
         }
     }
 
     /// The hits that lights shine on.
     fn collect(&mut self, scene: &Scene, needs: SceneNeeds, tree: &mut Tree) {
-        self.items.clear();
         self.eights.clear();
+        self.at_corners.clear();
         for (number, hits) in tree.hits.iter().enumerate() {
-            let mut eight = EightItems::new(number, self.items.len());
+            let mut eight = EightItems::new(number);
             for k in 0..hits.count {
                 let node = &mut tree.nodes[hits.nodes[k] as usize];
                 if node.keep == 0.0 {
@@ -74,11 +81,10 @@ impl Lighting {
                 }
                 match scene.material(hits.tris[k]).surface {
                     Surface::AppColor => node.local = scene.tris.color(hits.tris[k]).unwrap_or(GzColor::ONE),
-                    Surface::Shaded => {
-                        let item = Item::of(scene, needs, node, hits, k);
-                        eight.add(k, &item);
-                        self.items.push(item);
-                    }
+                    Surface::Shaded => match Item::of(scene, needs, node, hits, k) {
+                        item if item.at_corners => self.at_corners.push((number, k, item)),
+                        item => eight.add(k, &item),
+                    },
                 }
             }
             if eight.lanes != 0 {
@@ -87,7 +93,7 @@ impl Lighting {
         }
     }
 
-    /// What `light` would add to each item; its shadow rays when they are `casting`. An item that it adds nothing to has no ray.
+    /// What `light` would add to each hit; its shadow rays when they are `casting`. A hit that it adds nothing to has no ray.
     fn gather(
         &mut self,
         scene: &Scene,
@@ -97,32 +103,62 @@ impl Lighting {
         casting: bool,
         stats: &mut FrameStats,
     ) {
-        let Self { items, eights, lit, addends, rays, .. } = self;
-        dispatch(SimdLevel::best(), LightAll { items: eights, hits: &tree.hits, light, casting, lit });
+        let Self { eights, lit, addends, at_corners, corner_addends, rays, .. } = self;
         addends.clear();
-        rays.clear();
-        for (eight, lit) in eights.iter().zip(lit) {
+        corner_addends.clear();
+        rays.clear(matches!(light.kind, LightKind::Directional(_)));
+        dispatch(SimdLevel::best(), LightAll { items: eights, hits: &tree.hits, light, casting, lit });
+        for (number, (eight, lit)) in eights.iter().zip(lit).enumerate() {
             let hits = &tree.hits[eight.hits];
-            for (id, k) in (eight.first..).zip(lanes(eight.lanes)) {
+            for k in lanes(eight.lanes & (lit.open | !lit.dark)) {
                 let lit = if lit.open >> k & 1 != 0 {
-                    items[id].lit_by(scene, needs, (hits, k), light, casting)
-                } else if lit.dark >> k & 1 != 0 {
-                    Lit::Nothing
+                    let item = Item::of(scene, needs, &tree.nodes[hits.nodes[k] as usize], hits, k);
+                    item.lit_by(scene, needs, (hits, k), light, casting)
                 } else {
-                    let color = [lit.color(k), GzColor::ZERO, GzColor::ZERO];
                     let side = if lit.up >> k & 1 != 0 { 1 } else { -1 };
                     let arrival = light.arrive(vector(&hits.at.point, k));
+                    let color = [lit.color(k), GzColor::ZERO, GzColor::ZERO];
                     Lit::of(scene, (hits, k), color, casting.then_some((&arrival, side)))
                 };
-                match lit {
-                    Lit::Behind | Lit::Nothing => {}
-                    Lit::InPlane => stats.absorbed += 1,
-                    Lit::Adds { color, start } => {
-                        start.iter().for_each(|start| rays.push(start));
-                        addends.push(Addend { item: id as u32, color });
-                    }
+                if let Some([color, ..]) = cast(lit, rays, stats) {
+                    addends.push(Addend { eight: number as u32, k: k as u32, color });
                 }
             }
+        }
+        for (number, (hits, k, item)) in at_corners.iter().enumerate() {
+            let lit = item.lit_by(scene, needs, (&tree.hits[*hits], *k), light, casting);
+            if let Some(color) = cast(lit, rays, stats) {
+                corner_addends.push((number, color));
+            }
+        }
+    }
+
+    /// Adds what the light does add, now that it is known what is in its way if rays were `casting`.
+    fn add(&mut self, casting: bool) {
+        let mut shares = self.shadows.shares.iter();
+        let mut share = || if casting { shares.next().copied().unwrap_or(GzColor::ONE) } else { GzColor::ONE };
+        for &Addend { eight, k, color } in &self.addends {
+            self.eights[eight as usize].brighten(k as usize, color * share());
+        }
+        for &(number, colors) in &self.corner_addends {
+            let (sum, share) = (&mut self.at_corners[number].2.sum, share());
+            (0..3).for_each(|corner| sum[corner] += colors[corner] * share);
+        }
+    }
+}
+
+/// What a light adds that meets a hit so, once its shadow ray, if it has one, is among `rays`.
+#[inline]
+fn cast(lit: Lit, rays: &mut ShadowRays, stats: &mut FrameStats) -> Option<[GzColor; 3]> {
+    match lit {
+        Lit::Behind | Lit::Nothing => None,
+        Lit::InPlane => {
+            stats.absorbed += 1;
+            None
+        }
+        Lit::Adds { color, start } => {
+            start.iter().for_each(|start| rays.push(start));
+            Some(color)
         }
     }
 }

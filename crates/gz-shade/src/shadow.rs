@@ -25,16 +25,19 @@ pub struct ShadowRay {
 /// The shadow rays of one light: one direction and no end for a directional light, one of each per ray for a point light.
 #[derive(Debug, Default)]
 pub(crate) struct ShadowRays {
-    pub(crate) origins: Vec<DVec3>,
-    pub(crate) directions: Vec<GzCoord>,
-    pub(crate) tmax: Vec<f32>,
+    /// All directions are equal, and without end: only the first is kept.
+    common_direction: bool,
+    origins: Vec<DVec3>,
+    directions: Vec<GzCoord>,
+    tmax: Vec<f32>,
     /// The triangles that they leave.
     leaves: Vec<TriId>,
 }
 
 impl ShadowRays {
-    /// Forgets all rays.
-    pub(crate) fn clear(&mut self) {
+    /// Forgets all rays; the next ones are of another light.
+    pub(crate) fn clear(&mut self, common_direction: bool) {
+        self.common_direction = common_direction;
         self.origins.clear();
         self.directions.clear();
         self.tmax.clear();
@@ -42,23 +45,28 @@ impl ShadowRays {
     }
 
     /// Adds a ray.
+    #[inline]
     pub(crate) fn push(&mut self, ray: &ShadowRay) {
+        if !self.common_direction || self.origins.is_empty() {
+            self.directions.push(ray.direction);
+            self.tmax.push(ray.tmax);
+        }
         self.origins.push(ray.origin);
-        self.directions.push(ray.direction);
-        self.tmax.push(ray.tmax);
         self.leaves.push(ray.leaves);
     }
 
-    /// The rays as a batch. `common_direction`: all directions are equal, and without end.
-    fn batch(&self, common_direction: bool, policy: LeavePolicy) -> RayBatch<'_> {
-        let (len, origins, tmin) = (self.origins.len(), PerRay::Each(&self.origins[..]), PerRay::One(policy.tmin()));
-        let batch = match self.directions.first() {
-            Some(&direction) if common_direction => {
-                RayBatch::new(len, origins, PerRay::One(direction), tmin, PerRay::One(f32::INFINITY))
-            }
-            _ => RayBatch::new(len, origins, PerRay::Each(&self.directions), tmin, PerRay::Each(&self.tmax)),
+    pub(crate) fn len(&self) -> usize {
+        self.origins.len()
+    }
+
+    /// The rays as a batch.
+    fn batch(&self, policy: LeavePolicy) -> RayBatch<'_> {
+        let (origins, tmin) = (PerRay::Each(&self.origins[..]), PerRay::One(policy.tmin()));
+        let (directions, tmax) = match self.directions.first() {
+            Some(&direction) if self.common_direction => (PerRay::One(direction), PerRay::One(f32::INFINITY)),
+            _ => (PerRay::Each(&self.directions[..]), PerRay::Each(&self.tmax[..])),
         };
-        batch.leaving(&self.leaves)
+        RayBatch::new(self.len(), origins, directions, tmin, tmax).leaving(&self.leaves)
     }
 }
 
@@ -80,9 +88,9 @@ pub(crate) fn look(scene: &Scene, query: &dyn RayQuery, ray: &ShadowRay) -> (GzC
     let mut rays = ShadowRays::default();
     rays.push(ray);
     let mut shadows = Shadows::default();
-    shadows.trace(scene, query, &rays, false);
+    shadows.trace(scene, query, &rays);
     let (policy, mut blocker) = (scene.rules.leave, [Hit::MISS]);
-    closest_hits(query, policy, &rays.batch(false, policy), blockers(scene), &mut blocker);
+    closest_hits(query, policy, &rays.batch(policy), blockers(scene), &mut blocker);
     (shadows.shares[0], blocker[0])
 }
 
@@ -96,9 +104,9 @@ pub(crate) struct Shadows {
 
 impl Shadows {
     /// Traces `rays`; returns how many further questions it takes to ask about glass in the way one by one.
-    pub(crate) fn trace(&mut self, scene: &Scene, query: &dyn RayQuery, rays: &ShadowRays, common_direction: bool) -> u64 {
+    pub(crate) fn trace(&mut self, scene: &Scene, query: &dyn RayQuery, rays: &ShadowRays) -> u64 {
         let policy = scene.rules.leave;
-        let batch = rays.batch(common_direction, policy);
+        let batch = rays.batch(policy);
         let Passages { blocked, met } = &mut self.passages;
         let tinted = scene.rules.shadow == ShadowRule::Tinted && has_glass(scene);
         if tinted {

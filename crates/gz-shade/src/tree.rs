@@ -168,9 +168,21 @@ impl Tree {
         self.origins.clear();
         self.directions.clear();
         self.leaves.clear();
-        // Reflected rays first, then refracted ones: neighbours go the same way.
-        let some = |refracted| self.branches.iter().filter(move |branch| branch.kind == kind && branch.refracted == refracted);
-        for branch in some(false).chain(some(true)) {
+        let key = |branch: &Branch| {
+            let d = branch.ray.direction;
+            (usize::from(branch.refracted) << 3) | usize::from(d.x < 0.0) << 2 | usize::from(d.y < 0.0) << 1 | usize::from(d.z < 0.0)
+        };
+        let mut ends = [0usize; 17];
+        for branch in self.branches.iter().filter(|branch| branch.kind == kind) { ends[key(branch) + 1] += 1; }
+        for k in 0..16 { ends[k + 1] += ends[k]; }
+        let mut order = vec![0u32; ends[16]];
+        for (i, branch) in self.branches.iter().enumerate().filter(|(_, branch)| branch.kind == kind) {
+            let k = key(branch);
+            order[ends[k]] = i as u32;
+            ends[k] += 1;
+        }
+        for &i in &order {
+            let branch = &self.branches[i as usize];
             let parent = &self.nodes[branch.parent as usize];
             self.origins.push(branch.ray.origin);
             self.directions.push(branch.ray.direction);

@@ -136,12 +136,18 @@ fn in_order(rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], met: &mut Vec<(u32,
     }
     let (mut kept, mut next) = (first, first);
     while next < met.len() {
-        let (number, Hit { t, .. }) = met[next];
-        let alike = met[next..].iter().take_while(|(ray, hit)| *ray == number && hit.t == t).count();
-        let ray = rays.ray(number as usize);
+        let (number, hit) = met[next];
+        let alike = met[next..].iter().take_while(|(ray, other)| *ray == number && other.t == hit.t).count();
         // Behind the hit that counted last.
-        let tmin = if kept > first && met[kept - 1].0 == number { met[kept - 1].1.t.next_up() } else { ray.tmin };
-        if let Some(hit) = foremost(&GzRay { tmin, ..ray }, &met[next..next + alike], positions) {
+        let behind = kept > first && met[kept - 1].0 == number;
+        let tmin = if behind { met[kept - 1].1.t.next_up() } else { rays.tmin.get(number as usize) };
+        // Most are by themselves, and surely there: a T-value that rounds to above tmin is above it.
+        let counts = if alike == 1 && hit.t > tmin {
+            Some(hit)
+        } else {
+            foremost(&GzRay { tmin, ..rays.ray(number as usize) }, &met[next..next + alike], positions)
+        };
+        if let Some(hit) = counts {
             met[kept] = (number, hit);
             kept += 1;
         }
@@ -154,7 +160,6 @@ fn in_order(rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], met: &mut Vec<(u32,
 fn foremost(ray: &GzRay, alike: &[(u32, Hit)], positions: &[[GzCoord; 3]]) -> Option<Hit> {
     let mut best: Option<Hit> = None;
     for (_, hit) in alike {
-        // A T-value that rounds to above tmin is above it.
         let counts = hit.t > ray.tmin || hit.t == ray.tmin && is_hit(ray, &positions[hit.tri as usize]);
         if counts && best.is_none_or(|best| closer(ray, Some(best.tri), hit.tri, positions).is_some()) {
             best = Some(*hit);
