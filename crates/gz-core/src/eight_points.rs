@@ -23,14 +23,24 @@ pub struct EightPoints {
 }
 
 impl EightPoints {
-    /// Where each ray meets the triangle with its corners, which it is known to hit; with places to leave from if `leaving`. With the
+    /// Of rays that hit nothing.
+    pub const NOWHERE: Self = Self {
+        weights: [[0.0; 8]; 3],
+        point: [[0.0; 8]; 3],
+        to_side: [0; 8],
+        normal: [[0.0; 8]; 3],
+        lean: [f64::INFINITY; 8],
+        starts: [[[0.0; 8]; 3]; 2],
+        leaving: 0,
+    };
+
+    /// Finds where each ray meets the triangle with its corners, which it is known to hit; with places to leave from if `leaving`. With the
     /// instructions of `level`; the numbers are those of [`SurfacePoint::of`].
-    pub fn of(rays: &[GzRay; 8], corners: &[&[GzCoord; 3]; 8], leaving: bool, level: SimdLevel) -> Self {
-        let (mut points, settled) = dispatch(level, FindPoints { rays, corners, leaving });
+    pub fn find(&mut self, rays: &[GzRay; 8], corners: &[&[GzCoord; 3]; 8], leaving: bool, level: SimdLevel) {
+        let settled = dispatch(level, FindPoints { rays, corners, leaving, points: self });
         for k in (0..8).filter(|k| settled >> k & 1 == 0) {
-            points.set(k, &SurfacePoint::of(&rays[k], corners[k], leaving));
+            self.set(k, &SurfacePoint::of(&rays[k], corners[k], leaving));
         }
-        points
     }
 
     fn set(&mut self, k: usize, of: &SurfacePoint) {
@@ -122,7 +132,8 @@ mod tests {
             let directions = [GzCoord::new(0.1, -0.8, 0.3), GzCoord::Z, corners[0][1] - corners[0][0]];
             for &level in SimdLevel::available() {
                 for leaving in [true, false] {
-                    let points = EightPoints::of(&rays, &corners, leaving, level);
+                    let mut points = EightPoints::NOWHERE;
+                    points.find(&rays, &corners, leaving, level);
                     for k in 0..8 {
                         let expected = SurfacePoint::of(&rays[k], corners[k], leaving);
                         assert_eq!(points.lane(k), expected, "at {level:?}");

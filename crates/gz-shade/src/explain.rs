@@ -82,7 +82,7 @@ pub fn explain_pixel(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, i: 
         trace_and_shade(scene, needs, query, &tile, it.offset, &mut scratch, &mut stats);
         let first = list.len();
         let tree = scratch.tree();
-        let mut hits = tree.hits.iter().flat_map(|hits| (0..hits.count).map(move |k| (hits, k)));
+        let mut hits = tree.hits().iter().flat_map(|hits| (0..hits.count).map(move |k| (hits, k)));
         list.extend(tree.nodes.iter().map(|node| {
             let hit = if node.hit.is_hit() { hits.next() } else { None };
             let (ambient, lights) = parts(scene, needs, query, node, hit);

@@ -13,8 +13,7 @@ use gz_core::{GzColor, TriId};
 /// A hit that is shaded.
 #[derive(Debug)]
 pub(crate) struct Item {
-    pub(crate) node: u32,
-    pub(crate) tri: TriId,
+    tri: TriId,
     /// Weights for colours and normals: linear in screen space where the rules say so.
     weights: [f64; 3],
     /// Shaded at the corners instead of at the hit.
@@ -95,7 +94,7 @@ impl Item {
             }
         }
         let sum = [coefficients.ka * scene.ambient; 3];
-        Self { node: hits.nodes[k], tri, weights, at_corners, n, e, viewer, k: coefficients, texture, sum }
+        Self { tri, weights, at_corners, n, e, viewer, k: coefficients, texture, sum }
     }
 
     /// How `light` meets it, hit `k` of `hits`, and its shadow ray when they are `casting`.

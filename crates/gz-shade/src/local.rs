@@ -56,15 +56,16 @@ impl Lighting {
             self.add(casting);
         }
         // 3. The sums are the colours.
+        let (nodes, all) = tree.parts();
         for eight in &self.eights {
             for k in lanes(eight.lanes) {
-                let (node, sum) = (tree.hits[eight.hits].nodes[k], eight.sum(k));
+                let (node, sum) = (all[eight.hits].nodes[k], eight.sum(k));
                 let clamps = scene.rules.clamp_levels;
-                tree.nodes[node as usize].local = if clamps { sum.clamp(GzColor::ZERO, GzColor::ONE) } else { sum };
+                nodes[node as usize].local = if clamps { sum.clamp(GzColor::ZERO, GzColor::ONE) } else { sum };
             }
         }
         for (hits, k, item) in &self.at_corners {
-            tree.nodes[tree.hits[*hits].nodes[*k] as usize].local = item.color(scene.rules.clamp_levels);
+            nodes[all[*hits].nodes[*k] as usize].local = item.color(scene.rules.clamp_levels);
         }
     }
 
@@ -72,10 +73,11 @@ impl Lighting {
     fn collect(&mut self, scene: &Scene, needs: SceneNeeds, tree: &mut Tree) {
         self.eights.clear();
         self.at_corners.clear();
-        for (number, hits) in tree.hits.iter().enumerate() {
+        let (nodes, all) = tree.parts();
+        for (number, hits) in all.iter().enumerate() {
             let mut eight = EightItems::new(number);
             for k in 0..hits.count {
-                let node = &mut tree.nodes[hits.nodes[k] as usize];
+                let node = &mut nodes[hits.nodes[k] as usize];
                 if node.keep == 0.0 {
                     continue;
                 }
@@ -107,9 +109,9 @@ impl Lighting {
         addends.clear();
         corner_addends.clear();
         rays.clear(matches!(light.kind, LightKind::Directional(_)));
-        dispatch(SimdLevel::best(), LightAll { items: eights, hits: &tree.hits, light, casting, lit });
+        dispatch(SimdLevel::best(), LightAll { items: eights, hits: tree.hits(), light, casting, lit });
         for (number, (eight, lit)) in eights.iter().zip(lit).enumerate() {
-            let hits = &tree.hits[eight.hits];
+            let hits = &tree.hits()[eight.hits];
             for k in lanes(eight.lanes & (lit.open | !lit.dark)) {
                 let lit = if lit.open >> k & 1 != 0 {
                     let item = Item::of(scene, needs, &tree.nodes[hits.nodes[k] as usize], hits, k);
@@ -126,7 +128,7 @@ impl Lighting {
             }
         }
         for (number, (hits, k, item)) in at_corners.iter().enumerate() {
-            let lit = item.lit_by(scene, needs, (&tree.hits[*hits], *k), light, casting);
+            let lit = item.lit_by(scene, needs, (&tree.hits()[*hits], *k), light, casting);
             if let Some(color) = cast(lit, rays, stats) {
                 corner_addends.push((number, color));
             }

@@ -79,8 +79,9 @@ impl Node {
 #[derive(Debug, Default)]
 pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
-    /// Where the rays of the nodes hit, in the order of the nodes.
-    pub(crate) hits: Vec<EightHits>,
+    /// Where the rays of the nodes hit, in the order of the nodes: the first `eights`; behind them is room.
+    hits: Vec<EightHits>,
+    eights: usize,
     /// How many nodes have been looked at for that.
     met: usize,
     media: MediaStacks,
@@ -96,7 +97,7 @@ impl Tree {
     /// Forgets all nodes.
     pub(crate) fn clear(&mut self) {
         self.nodes.clear();
-        self.hits.clear();
+        self.eights = 0;
         self.met = 0;
         self.media.clear();
     }
@@ -110,14 +111,32 @@ impl Tree {
                 count += 1;
             }
             if count == 8 {
-                self.hits.push(EightHits::of(scene, needs, &self.nodes, &ids));
+                self.take(scene, needs, &ids);
                 count = 0;
             }
         }
         if count > 0 {
-            self.hits.push(EightHits::of(scene, needs, &self.nodes, &ids[..count]));
+            self.take(scene, needs, &ids[..count]);
         }
         self.met = self.nodes.len();
+    }
+
+    fn take(&mut self, scene: &Scene, needs: SceneNeeds, ids: &[u32]) {
+        if self.eights == self.hits.len() {
+            self.hits.push(EightHits::NONE);
+        }
+        self.hits[self.eights].take(scene, needs, &self.nodes, ids);
+        self.eights += 1;
+    }
+
+    /// The nodes, and where their rays hit: in the order of the nodes, eight at a time.
+    pub(crate) fn parts(&mut self) -> (&mut [Node], &[EightHits]) {
+        (&mut self.nodes, &self.hits[..self.eights])
+    }
+
+    /// Where the rays of the nodes hit.
+    pub(crate) fn hits(&self) -> &[EightHits] {
+        &self.hits[..self.eights]
     }
 
     /// Follows mirror and glass rays, level by level, from the roots; each kind of a level is one batch. With a depth limit of 0 no
@@ -139,7 +158,7 @@ impl Tree {
             return Ok(());
         }
         let roots = self.nodes.len();
-        let mut level = 0..self.hits.len();
+        let mut level = 0..self.eights;
         while !level.is_empty() {
             // 1. Where do the hits of this level go on?
             self.branches.clear();
@@ -153,11 +172,11 @@ impl Tree {
             if roots > 1 && self.nodes.len() + self.branches.len() > MAX_NODES {
                 return Err(TooLarge);
             }
-            let first = self.hits.len();
+            let first = self.eights;
             for kind in [RayKind::Mirror, RayKind::Glass] {
                 self.trace(kind, scene, needs, query, stats);
             }
-            level = first..self.hits.len();
+            level = first..self.eights;
         }
         Ok(())
     }

@@ -15,6 +15,7 @@ pub(crate) struct FindPoints<'p> {
     pub(crate) rays: &'p [GzRay; 8],
     pub(crate) corners: &'p [&'p [GzCoord; 3]; 8],
     pub(crate) leaving: bool,
+    pub(crate) points: &'p mut EightPoints,
 }
 
 /// The most steps that are taken side by side. The first gets off the plane, as a rule.
@@ -24,11 +25,11 @@ const STEPS: usize = 3;
 const ALL: u32 = 0xff;
 
 impl Task for FindPoints<'_> {
-    /// The points, and a bit for each of which f64 has decided all.
-    type Output = (EightPoints, u32);
+    /// A bit for each point of which f64 has decided all.
+    type Output = u32;
 
     #[inline(always)]
-    fn run<S: Simd>(self) -> Self::Output {
+    fn run<S: Simd>(self) -> u32 {
         let (mut origins, mut directions) = ([[0.0; 3]; 8], [[0.0; 3]; 8]);
         for k in 0..8 {
             origins[k] = self.rays[k].origin.to_array();
@@ -51,22 +52,18 @@ impl Task for FindPoints<'_> {
         if self.leaving {
             settled &= step_off(&Leaving::of(plane, &corners, weights), &mut starts);
         }
-        let mut to_side = [-1; 8];
+        let points = self.points;
+        store(&mut points.weights, weights);
+        store(&mut points.point, point);
+        store(&mut points.normal, normal);
+        points.lean = lean.array();
+        store(&mut points.starts[0], starts[0]);
+        store(&mut points.starts[1], starts[1]);
+        points.leaving = if self.leaving { ALL } else { 0 };
         for k in 0..8 {
-            if up >> k & 1 != 0 {
-                to_side[k] = 1;
-            }
+            points.to_side[k] = if up >> k & 1 != 0 { 1 } else { -1 };
         }
-        let points = EightPoints {
-            weights: arrays(weights),
-            point: arrays(point),
-            to_side,
-            normal: arrays(normal),
-            lean: lean.array(),
-            starts: [arrays(starts[0]), arrays(starts[1])],
-            leaving: if self.leaving { ALL } else { 0 },
-        };
-        (points, settled & ALL)
+        settled & ALL
     }
 }
 
@@ -140,6 +137,8 @@ fn without_tiny<D: EightDoubles>(x: D) -> D {
 }
 
 #[inline(always)]
-fn arrays<D: EightDoubles>(x: [D; 3]) -> [[f64; 8]; 3] {
-    [x[0].array(), x[1].array(), x[2].array()]
+fn store<D: EightDoubles>(rows: &mut [[f64; 8]; 3], x: [D; 3]) {
+    for axis in 0..3 {
+        rows[axis] = x[axis].array();
+    }
 }
