@@ -3,9 +3,9 @@
 use crate::eight::{lanes, vector};
 use crate::item::{Item, Lit};
 use crate::lit::{EightItems, EightLit, LightAll};
-use crate::shadow::{ShadowRays, Shadows};
+use crate::shadow::{ShadowRay, ShadowRays, Shadows};
 use crate::tree::Tree;
-use crate::{FrameStats, GzLight, LightKind, Scene, SceneNeeds, ShadowRule, Surface};
+use crate::{Arrival, FrameStats, GzLight, LightKind, Scene, SceneNeeds, ShadowRule, Surface};
 use gz_core::simd::dispatch;
 use gz_core::{GzColor, RayQuery, SimdLevel};
 
@@ -112,19 +112,24 @@ impl Lighting {
         dispatch(SimdLevel::best(), LightAll { items: eights, hits: tree.hits(), light, casting, lit });
         for (number, (eight, lit)) in eights.iter().zip(lit).enumerate() {
             let hits = &tree.hits()[eight.hits];
-            for k in lanes(eight.lanes & (lit.open | !lit.dark)) {
-                let lit = if lit.open >> k & 1 != 0 {
-                    let item = Item::of(scene, needs, &tree.nodes[hits.nodes[k] as usize], hits, k);
-                    item.lit_by(scene, needs, (hits, k), light, casting)
-                } else {
-                    let side = if lit.up >> k & 1 != 0 { 1 } else { -1 };
-                    let arrival = light.arrive(vector(&hits.at.point, k));
-                    let color = [lit.color(k), GzColor::ZERO, GzColor::ZERO];
-                    Lit::of(scene, (hits, k), color, casting.then_some((&arrival, side)))
-                };
+            for k in lanes(eight.lanes & lit.open) {
+                let item = Item::of(scene, needs, &tree.nodes[hits.nodes[k] as usize], hits, k);
+                let lit = item.lit_by(scene, needs, (hits, k), light, casting);
                 if let Some([color, ..]) = cast(lit, rays, stats) {
                     addends.push(Addend { eight: number as u32, k: k as u32, color });
                 }
+            }
+            for k in lanes(eight.lanes & !lit.open & !lit.dark) {
+                if casting {
+                    let Arrival { direction, tmax, .. } = light.arrive(vector(&hits.at.point, k));
+                    let side = if lit.up >> k & 1 != 0 { 1 } else { -1 };
+                    let Some(origin) = hits.origin(scene, k, direction, side) else {
+                        stats.absorbed += 1;
+                        continue;
+                    };
+                    rays.push(&ShadowRay { origin, direction, tmax, leaves: hits.tris[k] });
+                }
+                addends.push(Addend { eight: number as u32, k: k as u32, color: lit.color(k) });
             }
         }
         for (number, (hits, k, item)) in at_corners.iter().enumerate() {
