@@ -1,7 +1,8 @@
 //! The camera models and the homework's camera matrices.
 
 use crate::camera_spec::{CameraError, CameraModel, CameraSpec};
-use crate::{GzCoord, GzMatrix, GzRay, PerRay, RayBatch};
+use crate::simd::{Doubles, EightDoubles, Lanes, Simd, Task, dispatch};
+use crate::{GzCoord, GzMatrix, GzRay, PerRay, RayBatch, SimdLevel};
 use glam::{DVec2, DVec3};
 
 /// A camera ready to make primary rays. The homework's `GzCamera`.
@@ -136,33 +137,45 @@ impl GzCamera {
     ///
     /// Under pinhole an offset of 0 is the pixel's centre; under the course's models it is the integer screen point.
     pub fn ray(&self, i: u32, j: u32, offset: DVec2) -> GzRay {
-        let at = DVec2::new(f64::from(i), f64::from(j)) + offset;
-        let size = DVec2::new(f64::from(self.spec.width), f64::from(self.spec.height));
-        match self.spec.model {
-            CameraModel::Screen => {
-                // The least tmin below 0: z = 0 is on the view plane and still visible.
-                let tmin = -f32::from_bits(1);
-                GzRay { tmin, ..GzRay::from_f64(DVec3::new(at.x, at.y, 0.0), GzCoord::Z) }
-            }
-            CameraModel::Homework | CameraModel::Paper => {
-                let (x, y) = (2.0 * at.x / size.x - 1.0, 1.0 - 2.0 * at.y / size.y);
-                GzRay::from_f64(self.common_origin(), unit_f32(DVec3::new(x, y, self.d)))
-            }
-            CameraModel::Pinhole => {
-                let (x, y) = (2.0 * (at.x + 0.5) / size.x - 1.0, 1.0 - 2.0 * (at.y + 0.5) / size.y);
-                let [right, up, forward] = self.axes;
-                GzRay::from_f64(self.common_origin(), unit_f32(right * (x * self.half_width) + up * y + forward * self.d))
-            }
+        let (x, y) = (f64::from(i) + offset.x, f64::from(j) + offset.y);
+        if self.spec.model == CameraModel::Screen {
+            // The least tmin below 0: z = 0 is on the view plane and still visible.
+            let tmin = -f32::from_bits(1);
+            return GzRay { tmin, ..GzRay::from_f64(DVec3::new(x, y, 0.0), GzCoord::Z) };
         }
+        GzRay::from_f64(self.common_origin(), GzCoord::from_array(self.direction(x, y).map(|x| x as f32)))
+    }
+
+    /// The direction, at length 1, of the ray through the place (`x`, `y`) of the picture, in pixels, for models with a centre.
+    #[inline(always)]
+    fn direction<D: Doubles>(&self, x: D, y: D) -> [D; 3] {
+        let (one, two) = (D::splat(1.0), D::splat(2.0));
+        let (width, height) = (D::splat(f64::from(self.spec.width)), D::splat(f64::from(self.spec.height)));
+        let v = if self.spec.model == CameraModel::Pinhole {
+            let half = D::splat(0.5);
+            let x = two.times(x.plus(half)).over(width).minus(one).times(D::splat(self.half_width));
+            let y = one.minus(two.times(y.plus(half)).over(height));
+            let mut v = [one; 3];
+            for (axis, v) in v.iter_mut().enumerate() {
+                let [right, up, forward] = &self.axes;
+                let ahead = D::splat(forward[axis] * self.d);
+                *v = D::splat(right[axis]).times(x).plus(D::splat(up[axis]).times(y)).plus(ahead);
+            }
+            v
+        } else {
+            let (x, y) = (two.times(x).over(width).minus(one), one.minus(two.times(y).over(height)));
+            [x, y, D::splat(self.d)]
+        };
+        let length = v[0].times(v[0]).plus(v[1].times(v[1])).plus(v[2].times(v[2])).sqrt();
+        [v[0].over(length), v[1].over(length), v[2].over(length)]
     }
 
     /// The primary rays of `pixels` at one `offset`, as a batch that knows what they share. Row `k` is for `pixels[k]`.
     pub fn rays<'a>(&self, pixels: &[(u32, u32)], offset: DVec2, store: &'a mut PrimaryRays) -> RayBatch<'a> {
         store.origins.clear();
         store.directions.clear();
-        let rays = pixels.iter().map(|&(i, j)| self.ray(i, j, offset));
         if self.spec.model == CameraModel::Screen {
-            store.origins.extend(rays.map(|ray| ray.origin));
+            store.origins.extend(pixels.iter().map(|&(i, j)| self.ray(i, j, offset).origin));
             let tmin = self.ray(0, 0, offset).tmin;
             return RayBatch::new(
                 pixels.len(),
@@ -172,7 +185,7 @@ impl GzCamera {
                 PerRay::One(f32::INFINITY),
             );
         }
-        store.directions.extend(rays.map(|ray| ray.direction));
+        dispatch(SimdLevel::best(), Directions { camera: self, pixels, offset, directions: &mut store.directions });
         RayBatch::unbounded(pixels.len(), PerRay::One(self.common_origin()), PerRay::Each(&store.directions))
     }
 
@@ -206,6 +219,35 @@ pub struct PrimaryRays {
     directions: Vec<GzCoord>,
 }
 
+/// Directions of primary rays, eight pixels at a time.
+struct Directions<'a> {
+    camera: &'a GzCamera,
+    pixels: &'a [(u32, u32)],
+    offset: DVec2,
+    directions: &'a mut Vec<GzCoord>,
+}
+
+impl Task for Directions<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        for pixels in self.pixels.chunks(8) {
+            let (mut x, mut y) = ([0.0; 8], [0.0; 8]);
+            for (k, &(i, j)) in pixels.iter().enumerate() {
+                (x[k], y[k]) = (f64::from(i), f64::from(j));
+            }
+            let x = <S::Doubles>::load(&x).plus(<S::Doubles>::splat(self.offset.x));
+            let y = <S::Doubles>::load(&y).plus(<S::Doubles>::splat(self.offset.y));
+            let d = self.camera.direction(x, y);
+            let d = [S::narrow(d[0]).array(), S::narrow(d[1]).array(), S::narrow(d[2]).array()];
+            for k in 0..pixels.len() {
+                self.directions.push(GzCoord::new(d[0][k], d[1][k], d[2][k]));
+            }
+        }
+    }
+}
+
 fn dot(a: DVec3, b: DVec3) -> f64 {
     a.x * b.x + a.y * b.y + a.z * b.z
 }
@@ -214,11 +256,6 @@ fn dot(a: DVec3, b: DVec3) -> f64 {
 fn unit(v: DVec3) -> Option<DVec3> {
     let length = dot(v, v).sqrt();
     (length > 0.0 && length.is_finite()).then(|| v / length)
-}
-
-/// A direction that is never zero, at length 1 and rounded to f32.
-fn unit_f32(v: DVec3) -> GzCoord {
-    (v / dot(v, v).sqrt()).as_vec3()
 }
 
 #[cfg(test)]
