@@ -35,10 +35,11 @@ impl OnHit for Stopped {
 #[derive(Debug)]
 pub struct GoingThrough<'m> {
     through: ClassMask,
-    /// Places in the bundle, and triangles.
-    pairs: Vec<(u32, TriId)>,
-    /// Room for the triangles of pairs.
+    /// Triangles, packets of the bundle, and which of their rays hit them.
+    found: Vec<(TriId, usize, u32)>,
+    /// Room for the same, by places in the bundle: the triangles of each, and each with its place.
     tris: Vec<TriId>,
+    pairs: Vec<(u32, TriId)>,
     /// What the rays of bundles before met, as [`crate::Passages`] has it.
     met: &'m mut Vec<(u32, Hit)>,
 }
@@ -49,17 +50,13 @@ impl OnHit for GoingThrough<'_> {
         if !targets.is_of(tri, self.through) {
             return rays;
         }
-        let mut rest = rays;
-        while rest != 0 {
-            self.pairs.push(((p * LANES) as u32 + rest.trailing_zeros(), tri));
-            rest &= rest - 1;
-        }
+        self.found.push((tri, p, rays));
         0
     }
 
     #[inline(always)]
     fn settle<S: Simd>(&mut self, rays: &RayBatch<'_>, from: usize, blocked: &Rays, positions: &[[GzCoord; 3]]) {
-        if self.pairs.is_empty() {
+        if self.found.is_empty() {
             return;
         }
         self.sort(blocked);
@@ -71,7 +68,7 @@ impl OnHit for GoingThrough<'_> {
                 self.met.push((from as u32 + pairs[k].0, hits[k]));
             }
         }
-        self.pairs.clear();
+        self.found.clear();
         in_order(rays, positions, self.met, first);
     }
 }
@@ -79,27 +76,32 @@ impl OnHit for GoingThrough<'_> {
 impl<'m> GoingThrough<'m> {
     /// Nothing met yet; what is goes to `met`.
     pub fn new(through: ClassMask, met: &'m mut Vec<(u32, Hit)>) -> Self {
-        Self { through, pairs: Vec::new(), tris: Vec::new(), met }
+        Self { through, found: Vec::new(), tris: Vec::new(), pairs: Vec::new(), met }
     }
 
-    /// Puts the pairs in the order of their places, each once, and drops those of blocked rays. By counting: a ray has few.
+    /// Makes pairs of what was found, in the order of their places, each once, without blocked rays. By counting: a ray has few.
     #[inline(never)]
     fn sort(&mut self, blocked: &Rays) {
-        let Self { pairs, tris, .. } = self;
-        pairs.retain(|&(place, _)| blocked[place as usize / LANES] >> (place as usize % LANES) & 1 == 0);
+        let Self { found, tris, pairs, .. } = self;
         let mut ends = [0; BUNDLE];
-        pairs.iter().for_each(|&(place, _)| ends[place as usize] += 1);
+        for (_, p, rays) in &mut *found {
+            *rays &= !blocked[*p];
+            for_each(*rays, |lane| ends[*p * LANES + lane] += 1);
+        }
         let mut end = 0;
         for count in &mut ends {
             end += std::mem::replace(count, end);
         }
         tris.clear();
         tris.resize(end, 0);
-        for (place, tri) in pairs.drain(..) {
-            let next = &mut ends[place as usize];
-            tris[*next] = tri;
-            *next += 1;
+        for &(tri, p, rays) in &*found {
+            for_each(rays, |lane| {
+                let next = &mut ends[p * LANES + lane];
+                tris[*next] = tri;
+                *next += 1;
+            });
         }
+        pairs.clear();
         let mut first = 0;
         for (place, &end) in ends.iter().enumerate() {
             let of_ray = &mut tris[first..end];
@@ -107,6 +109,15 @@ impl<'m> GoingThrough<'m> {
             pairs.extend(of_ray.chunk_by(|tri, other| tri == other).map(|alike| (place as u32, alike[0])));
             first = end;
         }
+    }
+}
+
+/// Calls `act` with each lane whose bit is set.
+#[inline(always)]
+fn for_each(mut bits: u32, mut act: impl FnMut(usize)) {
+    while bits != 0 {
+        act(bits.trailing_zeros() as usize);
+        bits &= bits - 1;
     }
 }
 
