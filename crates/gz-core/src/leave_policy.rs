@@ -45,13 +45,7 @@ impl LeavePolicy {
 
     /// Where that ray starts, if it is known already that the exact rule has it start at `start`: see [`crate::SurfacePoint::start`].
     #[inline]
-    pub fn origin(
-        self,
-        start: Option<DVec3>,
-        corners: &[GzCoord; 3],
-        weights: [f64; 3],
-        direction: GzCoord,
-    ) -> Option<DVec3> {
+    pub fn origin(self, start: Option<DVec3>, corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoord) -> Option<DVec3> {
         match self {
             Self::Exact => start,
             _ => Some(self.cured(corners, weights, direction)),

@@ -9,7 +9,7 @@ use crate::refraction::refract;
 use crate::tree::{Node, RayKind};
 use crate::{FrameStats, GlassBlend, MaterialKind, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
-use gz_core::{GzColor, GzCoord, GzRay, side_of};
+use gz_core::{GzColor, GzCoord, side_of};
 
 /// Branches that weigh less than this of their pixel, in their strongest channel, end. It is a sixteenth of a step of a 12-bit
 /// picture and less than a hundredth of one of an 8-bit picture, as long as what the branch sees is not much brighter than 1.
@@ -22,10 +22,20 @@ pub(crate) struct Branch {
     pub(crate) kind: RayKind,
     /// It goes through the surface.
     pub(crate) refracted: bool,
-    pub(crate) ray: GzRay,
+    pub(crate) origin: DVec3,
+    pub(crate) direction: GzCoord,
     /// What the parent multiplies the branch's colour by.
     pub(crate) factor: GzColor,
     pub(crate) media: Media,
+}
+
+/// What a branch is but for its ray.
+#[derive(Clone, Copy)]
+struct Bounce {
+    kind: RayKind,
+    refracted: bool,
+    factor: GzColor,
+    media: Media,
 }
 
 /// What happens at the hits of a level.
@@ -165,8 +175,8 @@ impl Bouncer<'_> {
         } else {
             self.reflected(spot)
         };
-        let branch = Branch { parent: id, kind: RayKind::Mirror, refracted: false, ray: node.ray, factor, media: node.media };
-        let goes_on = self.emit(node, spot, direction, branch);
+        let goes_on =
+            self.emit(id, node, spot, direction, Bounce { kind: RayKind::Mirror, refracted: false, factor, media: node.media });
         // 3. What is left of the local colour. Under Replace a miss will bring it back.
         match rules.mirror_blend {
             MirrorBlend::Physical => (1.0 - share) as f32,
@@ -190,15 +200,15 @@ impl Bouncer<'_> {
         self.stats.unmatched_exits += u64::from(unmatched);
         self.stats.total_reflections += u64::from(!passes);
         // 2. The reflected branch stays in its medium, the refracted one changes it.
-        let branch = Branch { parent: id, kind: RayKind::Glass, refracted: false, ray: node.ray, factor: GzColor::splat(share), media: node.media };
+        let back = Bounce { kind: RayKind::Glass, refracted: false, factor: GzColor::splat(share), media: node.media };
         if share > 0.0 {
             let direction = self.reflected(spot);
-            self.emit(node, spot, direction, branch);
+            self.emit(id, node, spot, direction, back);
         }
         if passes {
             let (bent, to_side) = (spot.bends.refracted.lane(spot.k, &scene.tris, spot.hits), spot.to_side());
             let direction = self.on_side(spot, bent, to_side, |d, n| refract(d, n, eta).unwrap_or(d));
-            self.emit(node, spot, direction, Branch { refracted: true, factor: through, media: after, ..branch });
+            self.emit(id, node, spot, direction, Bounce { refracted: true, factor: through, media: after, ..back });
         }
         1.0
     }
@@ -234,10 +244,12 @@ impl Bouncer<'_> {
         self.scene.lights.last().map(|light| light.arrive(node.ray.at(node.hit.t)).direction)
     }
 
-    /// Adds `branch` along `direction`, with the side that it leads to, unless it weighs too little or has no way to go; returns whether it
-    /// was added.
-    fn emit(&mut self, node: &Node, spot: Spot<'_>, direction: Option<(GzCoord, i8)>, branch: Branch) -> bool {
-        let weight = (node.weight * branch.factor).max_element();
+    /// Adds a branch to node `id` along `direction`, with the side that it leads to, unless it weighs too little or has no way to go; returns
+    /// whether it was added.
+    #[inline]
+    fn emit(&mut self, id: u32, node: &Node, spot: Spot<'_>, direction: Option<(GzCoord, i8)>, bounce: Bounce) -> bool {
+        let Bounce { kind, refracted, factor, media } = bounce;
+        let weight = (node.weight * factor).max_element();
         if weight < LEAST_WEIGHT {
             self.stats.weak_branches += u64::from(weight > 0.0);
             self.stats.weak_weight = self.stats.weak_weight.saturating_add(FrameStats::units(weight));
@@ -248,8 +260,7 @@ impl Bouncer<'_> {
             self.stats.absorbed += 1;
             return false;
         };
-        let ray = GzRay { tmin: self.scene.rules.leave.tmin(), ..GzRay::from_f64(origin, direction) };
-        self.branches.push(Branch { ray, ..branch });
+        self.branches.push(Branch { parent: id, kind, refracted, origin, direction, factor, media });
         true
     }
 

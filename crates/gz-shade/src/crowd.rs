@@ -82,6 +82,7 @@ impl Crowd {
 mod tests {
     use super::*;
     use crate::media::Media;
+    use glam::DVec3;
     use gz_core::{GzColor, GzCoord, GzRay, Hit};
 
     /// `counts[r]` branches of root `r`, root by root in turn; branch `k` of a root weighs (1 + k % 7) / 8.
@@ -91,9 +92,17 @@ mod tests {
         let mut branches = Vec::new();
         for k in 0..counts.iter().copied().max().unwrap_or(0) {
             for r in (0..counts.len()).filter(|&r| k < counts[r]) {
-                let ray = GzRay::new(GzCoord::splat(k as f32), GzCoord::Z);
+                let (origin, direction) = (DVec3::splat(k as f64), GzCoord::Z);
                 let factor = GzColor::splat((1 + k % 7) as f32 / 8.0);
-                branches.push(Branch { parent: r as u32, kind: RayKind::Mirror, refracted: false, ray, factor, media: Media::AIR });
+                branches.push(Branch {
+                    parent: r as u32,
+                    kind: RayKind::Mirror,
+                    refracted: false,
+                    origin,
+                    direction,
+                    factor,
+                    media: Media::AIR,
+                });
             }
         }
         (nodes, branches)
@@ -101,7 +110,7 @@ mod tests {
 
     /// What is left of the branches of root `r`: which they are.
     fn left(branches: &[Branch], r: u32) -> Vec<f64> {
-        branches.iter().filter(|branch| branch.parent == r).map(|branch| branch.ray.origin.x).collect()
+        branches.iter().filter(|branch| branch.parent == r).map(|branch| branch.origin.x).collect()
     }
 
     #[test]

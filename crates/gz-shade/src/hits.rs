@@ -4,8 +4,8 @@ use crate::eight::{Rows, above, arrays, dot, lanes, load, plus, select, set, sig
 use crate::interpolate::{self, LEAST_SQUARE, corner_normals};
 use crate::tree::Node;
 use crate::{Interpolate, Scene, SceneNeeds};
-use gz_core::simd::{Doubles, Lanes, Simd, Task, dispatch, nine};
 use glam::DVec3;
+use gz_core::simd::{Doubles, Lanes, Simd, Task, dispatch, nine};
 use gz_core::{EightPoints, GzCoord, SimdLevel, TriId};
 
 /// Up to eight hits.
@@ -24,14 +24,8 @@ pub(crate) struct EightHits {
 
 impl EightHits {
     /// None.
-    pub(crate) const NONE: Self = Self {
-        nodes: [0; 8],
-        tris: [0; 8],
-        count: 0,
-        at: EightPoints::NOWHERE,
-        normal: [[0.0; 8]; 3],
-        outside: [0; 8],
-    };
+    pub(crate) const NONE: Self =
+        Self { nodes: [0; 8], tris: [0; 8], count: 0, at: EightPoints::NOWHERE, normal: [[0.0; 8]; 3], outside: [0; 8] };
 
     /// Becomes the hits of the rays of `ids` among `nodes`, 1 to 8.
     pub(crate) fn take(&mut self, scene: &Scene, needs: SceneNeeds, nodes: &[Node], ids: &[u32]) {

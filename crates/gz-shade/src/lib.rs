@@ -13,6 +13,7 @@ pub mod color;
 mod crowd;
 mod eight;
 mod explain;
+mod flock;
 mod frame;
 mod hits;
 mod interpolate;

@@ -96,15 +96,7 @@ impl Lighting {
     }
 
     /// What `light` would add to each hit; its shadow rays when they are `casting`. A hit that it adds nothing to has no ray.
-    fn gather(
-        &mut self,
-        scene: &Scene,
-        needs: SceneNeeds,
-        tree: &Tree,
-        light: &GzLight,
-        casting: bool,
-        stats: &mut FrameStats,
-    ) {
+    fn gather(&mut self, scene: &Scene, needs: SceneNeeds, tree: &Tree, light: &GzLight, casting: bool, stats: &mut FrameStats) {
         let Self { eights, lit, addends, at_corners, corner_addends, rays, .. } = self;
         addends.clear();
         corner_addends.clear();

@@ -2,6 +2,7 @@
 
 use crate::bounce::{Bouncer, Branch};
 use crate::crowd::Crowd;
+use crate::flock::Flock;
 use crate::hits::EightHits;
 use crate::media::{Media, MediaStacks};
 use crate::source::closest_hits;
@@ -87,6 +88,7 @@ pub(crate) struct Tree {
     media: MediaStacks,
     branches: Vec<Branch>,
     crowd: Crowd,
+    flock: Flock,
     origins: Vec<DVec3>,
     directions: Vec<GzCoord>,
     leaves: Vec<TriId>,
@@ -183,45 +185,34 @@ impl Tree {
 
     /// Traces the branches of one kind as a batch and adds them as nodes.
     fn trace(&mut self, kind: RayKind, scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, stats: &mut FrameStats) {
-        let first = self.nodes.len();
+        let (first, tmin) = (self.nodes.len(), scene.rules.leave.tmin());
         self.origins.clear();
         self.directions.clear();
         self.leaves.clear();
-        let key = |branch: &Branch| {
-            let d = branch.ray.direction;
-            (usize::from(branch.refracted) << 3) | usize::from(d.x < 0.0) << 2 | usize::from(d.y < 0.0) << 1 | usize::from(d.z < 0.0)
-        };
-        let mut ends = [0usize; 17];
-        for branch in self.branches.iter().filter(|branch| branch.kind == kind) { ends[key(branch) + 1] += 1; }
-        for k in 0..16 { ends[k + 1] += ends[k]; }
-        let mut order = vec![0u32; ends[16]];
-        for (i, branch) in self.branches.iter().enumerate().filter(|(_, branch)| branch.kind == kind) {
-            let k = key(branch);
-            order[ends[k]] = i as u32;
-            ends[k] += 1;
-        }
-        for &i in &order {
-            let branch = &self.branches[i as usize];
+        for &number in self.flock.order(&self.branches, kind) {
+            let branch = &self.branches[number as usize];
             let parent = &self.nodes[branch.parent as usize];
-            self.origins.push(branch.ray.origin);
-            self.directions.push(branch.ray.direction);
+            self.origins.push(branch.origin);
+            self.directions.push(branch.direction);
             self.leaves.push(parent.hit.tri);
+            let ray = GzRay { tmin, ..GzRay::from_f64(branch.origin, branch.direction) };
             self.nodes.push(Node {
                 parent: branch.parent,
+                root: parent.root,
                 kind,
                 depth: parent.depth + 1,
                 media: branch.media,
                 factor: branch.factor,
                 weight: parent.weight * branch.factor,
-                ..Node::root(parent.root, branch.ray, Hit::MISS)
+                ..Node::root(0, ray, Hit::MISS)
             });
         }
         let count = self.nodes.len() - first;
         if count == 0 {
             return;
         }
-        let (tmin, tmax) = (PerRay::One(scene.rules.leave.tmin()), PerRay::One(f32::INFINITY));
-        let rays = RayBatch::new(count, PerRay::Each(&self.origins), PerRay::Each(&self.directions), tmin, tmax);
+        let (origins, directions) = (PerRay::Each(&self.origins[..]), PerRay::Each(&self.directions[..]));
+        let rays = RayBatch::new(count, origins, directions, PerRay::One(tmin), PerRay::One(f32::INFINITY));
         let rays = rays.leaving(&self.leaves);
         self.answers.clear();
         self.answers.resize(count, Hit::MISS);
