@@ -83,6 +83,7 @@ impl EightPoints {
     }
 
     /// Where a ray starts that leaves point `k` to `side`: see [`SurfacePoint::start`].
+    #[inline]
     pub fn start(&self, k: usize, side: i8) -> Option<DVec3> {
         let rows = match side {
             1 => &self.starts[0],

@@ -38,22 +38,14 @@ impl LeavePolicy {
     ///
     /// Whoever asks about it has to mind [`Self::skips_source`].
     pub fn leave(self, corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoord) -> Option<GzRay> {
-        let start = if self.needs_starts() { leave_surface(corners, weights, direction) } else { None };
-        let origin = self.origin(start, corners, weights, direction)?;
+        let origin = match self {
+            Self::Exact => leave_surface(corners, weights, direction)?,
+            _ => self.cured(corners, weights, direction),
+        };
         Some(GzRay { tmin: self.tmin(), ..GzRay::from_f64(origin, direction) })
     }
 
-    /// Where that ray starts, if it is known already that the exact rule has it start at `start`: see [`crate::SurfacePoint::start`].
-    #[inline]
-    pub fn origin(self, start: Option<DVec3>, corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoord) -> Option<DVec3> {
-        match self {
-            Self::Exact => start,
-            _ => Some(self.cured(corners, weights, direction)),
-        }
-    }
-
     /// Where rays start by the rules that are no proof.
-    #[inline(never)]
     fn cured(self, corners: &[GzCoord; 3], weights: [f64; 3], direction: GzCoord) -> DVec3 {
         let (point, error) = rounded_point(corners, weights);
         // The least f32 is 2^-149, so that no origin is too small for a ray.

@@ -6,7 +6,7 @@ use crate::tree::Node;
 use crate::{Interpolate, Scene, SceneNeeds};
 use glam::DVec3;
 use gz_core::simd::{Doubles, Lanes, Simd, Task, dispatch, nine};
-use gz_core::{EightPoints, GzCoord, SimdLevel, TriId};
+use gz_core::{EightPoints, GzCoord, LeavePolicy, SimdLevel, TriId};
 
 /// Up to eight hits.
 #[derive(Debug)]
@@ -56,8 +56,12 @@ impl EightHits {
     /// Where a ray starts that leaves hit `k` along `direction`, to `side` of its triangle; `None` if there is no way out.
     #[inline]
     pub(crate) fn origin(&self, scene: &Scene, k: usize, direction: GzCoord, side: i8) -> Option<DVec3> {
-        let (corners, weights) = (scene.tris.position(self.tris[k]), self.at.weights.map(|row| row[k]));
-        scene.rules.leave.origin(self.at.start(k, side), corners, weights, direction)
+        let policy = scene.rules.leave;
+        if policy == LeavePolicy::Exact {
+            return self.at.start(k, side);
+        }
+        let weights = self.at.weights.map(|row| row[k]);
+        policy.leave(scene.tris.position(self.tris[k]), weights, direction).map(|ray| ray.origin)
     }
 }
 

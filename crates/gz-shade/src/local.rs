@@ -75,7 +75,8 @@ impl Lighting {
         self.at_corners.clear();
         let (nodes, all) = tree.parts();
         for (number, hits) in all.iter().enumerate() {
-            let mut eight = EightItems::new(number);
+            self.eights.push(EightItems::new(number));
+            let [.., eight] = &mut self.eights[..] else { continue };
             for k in 0..hits.count {
                 let node = &mut nodes[hits.nodes[k] as usize];
                 if node.keep == 0.0 {
@@ -89,8 +90,8 @@ impl Lighting {
                     },
                 }
             }
-            if eight.lanes != 0 {
-                self.eights.push(eight);
+            if eight.lanes == 0 {
+                self.eights.pop();
             }
         }
     }

@@ -195,16 +195,20 @@ impl Tree {
             self.origins.push(branch.origin);
             self.directions.push(branch.direction);
             self.leaves.push(parent.hit.tri);
-            let ray = GzRay { tmin, ..GzRay::from_f64(branch.origin, branch.direction) };
+            // Field by field: a ray that is put together first is read back from memory in other pieces than it was written, which stalls.
             self.nodes.push(Node {
                 parent: branch.parent,
                 root: parent.root,
                 kind,
                 depth: parent.depth + 1,
+                ray: GzRay { origin: branch.origin, direction: branch.direction, tmin, tmax: f32::INFINITY },
+                hit: Hit::MISS,
                 media: branch.media,
                 factor: branch.factor,
                 weight: parent.weight * branch.factor,
-                ..Node::root(0, ray, Hit::MISS)
+                keep: 1.0,
+                local: GzColor::ZERO,
+                color: GzColor::ZERO,
             });
         }
         let count = self.nodes.len() - first;
