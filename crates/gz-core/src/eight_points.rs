@@ -34,12 +34,20 @@ impl EightPoints {
         leaving: 0,
     };
 
-    /// Finds where each ray meets the triangle with its corners, which it is known to hit; with places to leave from if `leaving`. With the
-    /// instructions of `level`; the numbers are those of [`SurfacePoint::of`].
-    pub fn find(&mut self, rays: &[GzRay; 8], corners: &[&[GzCoord; 3]; 8], leaving: bool, level: SimdLevel) {
-        let settled = dispatch(level, FindPoints { rays, corners, leaving, points: self });
+    /// Finds where each ray, by its origin and direction, meets the triangle with its corners, which it is known to hit; with places to leave
+    /// from if `leaving`. With the instructions of `level`; the numbers are those of [`SurfacePoint::of`].
+    pub fn find(
+        &mut self,
+        origins: &[[f64; 3]; 8],
+        directions: &[[f32; 3]; 8],
+        corners: &[&[GzCoord; 3]; 8],
+        leaving: bool,
+        level: SimdLevel,
+    ) {
+        let settled = dispatch(level, FindPoints { origins, directions, corners, leaving, points: self });
         for k in (0..8).filter(|k| settled >> k & 1 == 0) {
-            self.set(k, &SurfacePoint::of(&rays[k], corners[k], leaving));
+            let ray = GzRay::from_f64(origins[k].into(), directions[k].into());
+            self.set(k, &SurfacePoint::of(&ray, corners[k], leaving));
         }
     }
 
@@ -129,12 +137,13 @@ mod tests {
         let (mut told, mut open) = (0, 0);
         for eight in hits.chunks_exact(8) {
             let rays = std::array::from_fn(|k| eight[k].0);
+            let (origins, ways) = (rays.map(|ray: GzRay| ray.origin.to_array()), rays.map(|ray| ray.direction.to_array()));
             let corners = std::array::from_fn(|k| tris.position(eight[k].1));
             let directions = [GzCoord::new(0.1, -0.8, 0.3), GzCoord::Z, corners[0][1] - corners[0][0]];
             for &level in SimdLevel::available() {
                 for leaving in [true, false] {
                     let mut points = EightPoints::NOWHERE;
-                    points.find(&rays, &corners, leaving, level);
+                    points.find(&origins, &ways, &corners, leaving, level);
                     for k in 0..8 {
                         let expected = SurfacePoint::of(&rays[k], corners[k], leaving);
                         assert_eq!(points.lane(k), expected, "at {level:?}");

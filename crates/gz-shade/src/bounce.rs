@@ -6,7 +6,7 @@ use crate::hits::EightHits;
 use crate::media::{Media, MediaStacks};
 use crate::reflection::reflect;
 use crate::refraction::refract;
-use crate::tree::{Node, RayKind};
+use crate::tree::{Node, RayKind, Rays};
 use crate::{FrameStats, GlassBlend, MaterialKind, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
 use gz_core::{GzColor, GzCoord, side_of};
@@ -96,7 +96,7 @@ impl Bouncer<'_> {
     /// Adds the branches that go on from `hits` and tells their nodes what the local colour is multiplied by.
     ///
     /// At the depth limit a hit has no branches and keeps its local colour whole.
-    pub(crate) fn bounce(&mut self, hits: &EightHits, nodes: &mut [Node]) {
+    pub(crate) fn bounce(&mut self, hits: &EightHits, nodes: &mut [Node], rays: &Rays) {
         let scene = self.scene;
         let (mut mirrors, mut glass) = (0, 0);
         for k in 0..hits.count {
@@ -110,10 +110,10 @@ impl Bouncer<'_> {
             return;
         }
         // 1. Where do the rays come from?
-        let mut directions = hits.nodes.map(|id| nodes[id as usize].ray.direction);
+        let mut directions = hits.nodes.map(|id| rays.directions[id as usize]);
         let mut to_side = hits.at.to_side;
         for k in lanes(if scene.rules.reflect_last_light { mirrors } else { 0 }) {
-            if let Some(mistaken) = self.last_light(&nodes[hits.nodes[k] as usize]) {
+            if let Some(mistaken) = self.last_light(hits.nodes[k], &nodes[hits.nodes[k] as usize], rays) {
                 directions[k] = mistaken;
                 to_side[k] = side_of(scene.tris.position(hits.tris[k]), mistaken);
             }
@@ -214,6 +214,7 @@ impl Bouncer<'_> {
     }
 
     /// Where light is reflected to, and the side of the triangle that that is.
+    #[inline(always)]
     fn reflected(&mut self, spot: Spot<'_>) -> Option<(GzCoord, i8)> {
         let bent = spot.bends.reflected.lane(spot.k, &self.scene.tris, spot.hits);
         self.on_side(spot, bent, -spot.to_side(), reflect)
@@ -222,6 +223,7 @@ impl Bouncer<'_> {
     /// The direction `bent` if it leads to `side` of the triangle; else mirrored at the triangle's plane and counted, which is the same
     /// direction in the limit. `None` if that lies in the plane. Without geometric sides any direction will do. Beside it the side that it
     /// leads to. `bend` makes the direction in f64 from those of the ray and the normal.
+    #[inline(always)]
     fn on_side(
         &mut self,
         spot: Spot<'_>,
@@ -240,8 +242,8 @@ impl Bouncer<'_> {
     }
 
     /// The direction to the last light, which the mistake behind the paper's refraction figure takes for the ray's own.
-    fn last_light(&self, node: &Node) -> Option<GzCoord> {
-        self.scene.lights.last().map(|light| light.arrive(node.ray.at(node.hit.t)).direction)
+    fn last_light(&self, id: u32, node: &Node, rays: &Rays) -> Option<GzCoord> {
+        self.scene.lights.last().map(|light| light.arrive(rays.ray(id, node, self.scene).at(node.hit.t)).direction)
     }
 
     /// Adds a branch to node `id` along `direction`, with the side that it leads to, unless it weighs too little or has no way to go; returns

@@ -83,12 +83,11 @@ mod tests {
     use super::*;
     use crate::media::Media;
     use glam::DVec3;
-    use gz_core::{GzColor, GzCoord, GzRay, Hit};
+    use gz_core::{GzColor, GzCoord, Hit};
 
     /// `counts[r]` branches of root `r`, root by root in turn; branch `k` of a root weighs (1 + k % 7) / 8.
     fn some(counts: &[usize]) -> (Vec<Node>, Vec<Branch>) {
-        let ray = GzRay::new(GzCoord::ZERO, GzCoord::Z);
-        let nodes = (0..counts.len()).map(|r| Node { keep: 0.0, ..Node::root(r as u32, ray, Hit::MISS) }).collect();
+        let nodes = (0..counts.len()).map(|r| Node { keep: 0.0, ..Node::root(r as u32, Hit::MISS) }).collect();
         let mut branches = Vec::new();
         for k in 0..counts.iter().copied().max().unwrap_or(0) {
             for r in (0..counts.len()).filter(|&r| k < counts[r]) {

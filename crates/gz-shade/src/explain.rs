@@ -7,7 +7,7 @@ use crate::local::casts_shadow_rays;
 use crate::shadow::{ShadowRay, look};
 use crate::tree::{NO_PARENT, Node, RayKind};
 use crate::{FrameStats, Scene, SceneNeeds, Surface};
-use gz_core::{GzColor, GzRay, Hit, RayQuery, Tile};
+use gz_core::{GzColor, GzCoord, GzRay, Hit, RayQuery, Tile};
 
 /// Why a light adds to a hit what it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,16 +83,17 @@ pub fn explain_pixel(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, i: 
         let first = list.len();
         let tree = scratch.tree();
         let mut hits = tree.hits().iter().flat_map(|hits| (0..hits.count).map(move |k| (hits, k)));
-        list.extend(tree.nodes.iter().map(|node| {
+        list.extend((0..).zip(&tree.nodes).map(|(id, node)| {
+            let ray = tree.rays.ray(id, node, scene);
             let hit = if node.hit.is_hit() { hits.next() } else { None };
-            let (ambient, lights) = parts(scene, needs, query, node, hit);
+            let (ambient, lights) = parts(scene, needs, query, node, ray.direction, hit);
             ExplainNode {
                 sample,
                 sample_weight: it.weight,
                 parent: (node.parent != NO_PARENT).then(|| first + node.parent as usize),
                 kind: node.kind,
                 depth: node.depth,
-                ray: node.ray,
+                ray,
                 hit: node.hit,
                 local: node.local,
                 ambient,
@@ -106,17 +107,18 @@ pub fn explain_pixel(scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, i: 
     list
 }
 
-/// The parts of the local colour of `node`, whose ray has the hit `hit` if any: by ambient light, and by each light.
+/// The parts of the local colour of `node`, whose ray goes along `direction` and has the hit `hit` if any: by ambient light, and by each light.
 fn parts(
     scene: &Scene,
     needs: SceneNeeds,
     query: &dyn RayQuery,
     node: &Node,
+    direction: GzCoord,
     hit: Option<(&EightHits, usize)>,
 ) -> (GzColor, Vec<LightPart>) {
     let shaded = |(hits, k): &(&EightHits, usize)| node.keep != 0.0 && scene.material(hits.tris[*k]).surface == Surface::Shaded;
     let Some((hits, k)) = hit.filter(shaded) else { return (GzColor::ZERO, Vec::new()) };
-    let item = Item::of(scene, needs, node, hits, k);
+    let item = Item::of(scene, needs, node, direction, hits, k);
     let part = |(light, it)| {
         let (color, sight) = match item.lit_by(scene, needs, (hits, k), it, casts_shadow_rays(scene, needs)) {
             Lit::Behind => (GzColor::ZERO, Sight::Behind),

@@ -2,7 +2,7 @@
 
 use crate::aa::{Sample, pixel_color, sample_value, samples};
 use crate::local::Lighting;
-use crate::tree::{MAX_NODES, Node, TooLarge, Tree};
+use crate::tree::{MAX_NODES, TooLarge, Tree};
 use crate::{FrameStats, Scene, SceneNeeds};
 use glam::{DVec2, DVec3};
 use gz_core::{GzColor, RayQuery, Tile, TileGrid, TileScratch, tile_hits};
@@ -141,10 +141,7 @@ pub(crate) fn trace_and_shade(
     while shaded.len() < hits.len() {
         let part = shaded.len()..hits.len().min(shaded.len() + *at_a_time);
         // The pixels: the roots.
-        tree.clear();
-        for (id, pixel) in part.clone().enumerate() {
-            tree.nodes.push(Node::root(id as u32, rays.ray(pixel), hits[pixel]));
-        }
+        tree.plant(&rays, hits, part.clone());
         tree.meet(scene, needs);
         // Mirror and glass rays: the branches.
         let mut counted = FrameStats::default();

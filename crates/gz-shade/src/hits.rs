@@ -2,7 +2,7 @@
 
 use crate::eight::{Rows, above, arrays, dot, lanes, load, plus, select, set, signs, times, widen};
 use crate::interpolate::{self, LEAST_SQUARE, corner_normals};
-use crate::tree::Node;
+use crate::tree::{Node, Rays};
 use crate::{Interpolate, Scene, SceneNeeds};
 use glam::DVec3;
 use gz_core::simd::{Doubles, Lanes, Simd, Task, dispatch, nine};
@@ -28,15 +28,15 @@ impl EightHits {
         Self { nodes: [0; 8], tris: [0; 8], count: 0, at: EightPoints::NOWHERE, normal: [[0.0; 8]; 3], outside: [0; 8] };
 
     /// Becomes the hits of the rays of `ids` among `nodes`, 1 to 8.
-    pub(crate) fn take(&mut self, scene: &Scene, needs: SceneNeeds, nodes: &[Node], ids: &[u32]) {
+    pub(crate) fn take(&mut self, scene: &Scene, needs: SceneNeeds, nodes: &[Node], rays: &Rays, ids: &[u32]) {
         self.count = ids.len();
         self.nodes = std::array::from_fn(|k| ids[if k < ids.len() { k } else { 0 }]);
-        let rays = self.nodes.map(|id| nodes[id as usize].ray);
         self.tris = self.nodes.map(|id| nodes[id as usize].hit.tri);
         let corners = self.tris.map(|tri| scene.tris.position(tri));
         let leaving = scene.rules.leave.needs_starts() && scene.has_secondary_rays();
         let level = SimdLevel::best();
-        self.at.find(&rays, &corners, leaving, level);
+        let (origins, directions) = rays.eight(&self.nodes);
+        self.at.find(&origins, &directions, &corners, leaving, level);
 
         let stored = self.tris.map(|tri| corner_normals(&scene.tris, needs, tri));
         let bits = |is: &dyn Fn(usize) -> bool| (0..8).fold(0, |bits, k| bits | u32::from(is(k)) << k);
@@ -54,14 +54,20 @@ impl EightHits {
     }
 
     /// Where a ray starts that leaves hit `k` along `direction`, to `side` of its triangle; `None` if there is no way out.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn origin(&self, scene: &Scene, k: usize, direction: GzCoord, side: i8) -> Option<DVec3> {
-        let policy = scene.rules.leave;
-        if policy == LeavePolicy::Exact {
-            return self.at.start(k, side);
+        match scene.rules.leave {
+            LeavePolicy::Exact => self.at.start(k, side),
+            _ => self.other_origin(scene, k, direction),
         }
+    }
+
+    /// By the rules that are no proof.
+    #[cold]
+    #[inline(never)]
+    fn other_origin(&self, scene: &Scene, k: usize, direction: GzCoord) -> Option<DVec3> {
         let weights = self.at.weights.map(|row| row[k]);
-        policy.leave(scene.tris.position(self.tris[k]), weights, direction).map(|ray| ray.origin)
+        scene.rules.leave.leave(scene.tris.position(self.tris[k]), weights, direction).map(|ray| ray.origin)
     }
 }
 

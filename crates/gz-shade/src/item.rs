@@ -8,27 +8,31 @@ use crate::shadow::ShadowRay;
 use crate::tree::Node;
 use crate::{Arrival, Eye, GzLight, Interpolate, Material, Scene, SceneNeeds, Texture};
 use glam::DVec3;
-use gz_core::{GzColor, TriId};
+use gz_core::{GzColor, GzCoord};
 
 /// A hit that is shaded.
 #[derive(Debug)]
 pub(crate) struct Item {
-    tri: TriId,
-    /// Weights for colours and normals: linear in screen space where the rules say so.
-    weights: [f64; 3],
-    /// Shaded at the corners instead of at the hit.
-    pub(crate) at_corners: bool,
-    /// Unit normal at the hit; unused when shaded at the corners.
-    pub(crate) n: DVec3,
+    /// Where it is shaded at the corners.
+    corners: Option<AtCorners>,
+    /// The unit normal, where it is not that of the hit.
+    pub(crate) n: Option<DVec3>,
     /// To the viewer.
-    pub(crate) e: DVec3,
+    pub(crate) e: GzCoord,
     /// The side of the triangle that the viewer is on; 0 when normals alone decide which lights count.
     pub(crate) viewer: i8,
     pub(crate) k: Coefficients,
-    /// Multiplies the interpolated corner colours.
-    texture: GzColor,
     /// The equation so far, at the hit or at each corner.
     pub(crate) sum: [GzColor; 3],
+}
+
+/// What becomes of colours at the corners.
+#[derive(Debug)]
+struct AtCorners {
+    /// The weights of the corners: linear in screen space where the rules say so.
+    weights: [f64; 3],
+    /// Multiplies the interpolated colour.
+    texture: GzColor,
 }
 
 /// How one light meets an item, before anything in the way is asked for.
@@ -61,40 +65,40 @@ impl Lit {
 }
 
 impl Item {
-    /// Hit `k` of `hits`, that of `node`, before any light.
-    pub(crate) fn of(scene: &Scene, needs: SceneNeeds, node: &Node, hits: &EightHits, k: usize) -> Self {
+    /// Hit `k` of `hits`, that of `node`, whose ray goes along `direction`, before any light.
+    pub(crate) fn of(scene: &Scene, needs: SceneNeeds, node: &Node, direction: GzCoord, hits: &EightHits, k: usize) -> Self {
         let (tris, rules, tri) = (&scene.tris, &scene.rules, hits.tris[k]);
         let material = scene.material(tri);
-        let at_hit = hits.at.weights.map(|row| row[k]);
+        let at_hit = || hits.at.weights.map(|row| row[k]);
         let on_screen = rules.screen_interpolation && node.depth == 0;
-        let weights = if on_screen { scene.camera.screen_weights(tris.position(tri), at_hit) } else { at_hit };
+        let weights = || if on_screen { scene.camera.screen_weights(tris.position(tri), at_hit()) } else { at_hit() };
         let at_corners = needs.gouraud && material.interpolate == Interpolate::Gouraud;
-        let n = if on_screen && !at_corners {
-            interpolate::normal(tris, needs, tri, &hits.at.lane(k), material.interpolate, weights)
-        } else {
-            vector(&hits.normal, k)
-        };
+        let n = (on_screen && !at_corners)
+            .then(|| interpolate::normal(tris, needs, tri, &hits.at.lane(k), material.interpolate, weights()));
         let e = match rules.eye {
-            Eye::Ray => -node.ray.direction.as_dvec3(),
-            Eye::Fixed => DVec3::NEG_Z,
+            Eye::Ray => -direction,
+            Eye::Fixed => GzCoord::NEG_Z,
         };
         let geometric = rules.geometric_sides && scene.has_secondary_rays();
         let viewer = if geometric { -hits.at.to_side[k] } else { 0 };
 
-        let mut coefficients = Coefficients { ka: material.ka, kd: material.kd, ks: material.ks, power: material.power };
-        let mut texture = GzColor::ONE;
-        if let Some(color) = texture_of(scene, needs, material).map(|it| it.color(interpolate::uv(tris, tri, at_hit))) {
-            if at_corners {
-                // Corners are shaded white; the texture multiplies highlights too.
-                coefficients = Coefficients { ka: GzColor::ONE, kd: GzColor::ONE, ks: GzColor::ONE, ..coefficients };
-                texture = color;
-            } else {
-                // The texture is what the surface scatters.
-                coefficients = Coefficients { ka: color, kd: color, ..coefficients };
-            }
-        }
-        let sum = [coefficients.ka * scene.ambient; 3];
-        Self { tri, weights, at_corners, n, e, viewer, k: coefficients, texture, sum }
+        let texture = texture_of(scene, needs, material).map(|it| it.color(interpolate::uv(tris, tri, at_hit())));
+        let ks = material.ks;
+        let (ka, kd, ks) = match texture {
+            // Corners are shaded white; the texture multiplies highlights too.
+            Some(_) if at_corners => (GzColor::ONE, GzColor::ONE, GzColor::ONE),
+            // The texture is what the surface scatters.
+            Some(color) => (color, color, ks),
+            None => (material.ka, material.kd, ks),
+        };
+        let corners = at_corners.then(|| AtCorners { weights: weights(), texture: texture.unwrap_or(GzColor::ONE) });
+        let k = Coefficients { ka, kd, ks, power: material.power };
+        Self { corners, n, e, viewer, k, sum: [ka * scene.ambient; 3] }
+    }
+
+    /// Whether it is shaded at the corners instead of at the hit.
+    pub(crate) fn is_at_corners(&self) -> bool {
+        self.corners.is_some()
     }
 
     /// How `light` meets it, hit `k` of `hits`, and its shadow ray when they are `casting`.
@@ -106,20 +110,22 @@ impl Item {
         light: &GzLight,
         casting: bool,
     ) -> Lit {
-        let (at, corners) = (hits.at.lane(k), scene.tris.position(self.tri));
+        let tri = hits.tris[k];
+        let (at, corners, e) = (hits.at.lane(k), scene.tris.position(tri), self.e.as_dvec3());
         let arrival = light.arrive(at.point);
         let side = if self.viewer != 0 || casting { at.side_of(corners, arrival.direction) } else { 0 };
         if self.viewer != 0 && side != self.viewer {
             return Lit::Behind;
         }
-        let color = if self.at_corners {
-            let normals = interpolate::normals_at_corners(&scene.tris, needs, self.tri, &at);
+        let color = if self.is_at_corners() {
+            let normals = interpolate::normals_at_corners(&scene.tris, needs, tri, &at);
             std::array::from_fn(|corner| {
                 let arrival = light.arrive(corners[corner].as_dvec3());
-                light_share(&self.k, normals[corner], arrival.to_light, self.e) * arrival.color
+                light_share(&self.k, normals[corner], arrival.to_light, e) * arrival.color
             })
         } else {
-            [light_share(&self.k, self.n, arrival.to_light, self.e) * arrival.color, GzColor::ZERO, GzColor::ZERO]
+            let n = self.n.unwrap_or_else(|| vector(&hits.normal, k));
+            [light_share(&self.k, n, arrival.to_light, e) * arrival.color, GzColor::ZERO, GzColor::ZERO]
         };
         if color == [GzColor::ZERO; 3] {
             return Lit::Nothing;
@@ -140,7 +146,10 @@ impl Item {
 
     /// What colours at the hit or at each corner are at the hit.
     pub(crate) fn at_hit(&self, color: [GzColor; 3]) -> GzColor {
-        if self.at_corners { interpolate::color(color, self.weights) * self.texture } else { color[0] }
+        match &self.corners {
+            Some(AtCorners { weights, texture }) => interpolate::color(color, *weights) * *texture,
+            None => color[0],
+        }
     }
 }
 

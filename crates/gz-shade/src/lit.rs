@@ -24,7 +24,7 @@ pub(crate) struct EightItems {
     /// The lanes whose viewer is on side 1 of the triangle, and on side -1; others are lit from both sides.
     viewers: [u32; 2],
     n: Rows,
-    e: Rows,
+    e: [[f32; 8]; 3],
     kd: Colors,
     ks: Colors,
     /// The lanes that have highlights, and their powers.
@@ -35,11 +35,11 @@ pub(crate) struct EightItems {
 }
 
 impl EightItems {
-    /// None yet of hits number `hits`.
-    pub(crate) fn new(hits: usize) -> Self {
-        let (rows, colors) = ([[0.0; 8]; 3], [[0.0; 8]; 3]);
-        let (kd, ks, power, sum) = (colors, colors, [0.0; 8], colors);
-        Self { hits, lanes: 0, viewers: [0; 2], n: rows, e: rows, kd, ks, shiny: 0, power, sum }
+    /// None yet of hits number `number`, `hits`.
+    pub(crate) fn new(number: usize, hits: &EightHits) -> Self {
+        let none = [[0.0; 8]; 3];
+        let (n, e, kd, ks, power, sum) = (hits.normal, none, none, none, [0.0; 8], none);
+        Self { hits: number, lanes: 0, viewers: [0; 2], n, e, kd, ks, shiny: 0, power, sum }
     }
 
     /// Adds hit number `k`, which is not shaded at the corners.
@@ -48,9 +48,11 @@ impl EightItems {
         self.lanes |= 1 << k;
         self.viewers[0] |= u32::from(item.viewer == 1) << k;
         self.viewers[1] |= u32::from(item.viewer == -1) << k;
-        set(&mut self.n, k, item.n);
-        set(&mut self.e, k, item.e);
+        if let Some(n) = item.n {
+            set(&mut self.n, k, n);
+        }
         for channel in 0..3 {
+            self.e[channel][k] = item.e[channel];
             self.kd[channel][k] = item.k.kd[channel];
             self.ks[channel][k] = item.k.ks[channel];
             self.sum[channel][k] = item.sum[0][channel];
@@ -87,7 +89,7 @@ impl EightItems {
         }
         // 2. Diffuse light, on the side of the normal that both light and viewer are on.
         let zero = <S::Doubles>::splat(0.0);
-        let (n, l, e) = (load::<S::Doubles>(&self.n), arrivals.to_light, load::<S::Doubles>(&self.e));
+        let (n, l, e) = (load::<S::Doubles>(&self.n), arrivals.to_light, widen::<S>(&load3(&self.e)));
         let (nl, ne) = (dot(&n, &l), dot(&n, &e));
         let front = zero.at_most(nl) & zero.at_most(ne);
         let back = nl.at_most(zero) & ne.at_most(zero);

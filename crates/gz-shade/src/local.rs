@@ -56,7 +56,7 @@ impl Lighting {
             self.add(casting);
         }
         // 3. The sums are the colours.
-        let (nodes, all) = tree.parts();
+        let (nodes, _, all) = tree.parts();
         for eight in &self.eights {
             for k in lanes(eight.lanes) {
                 let (node, sum) = (all[eight.hits].nodes[k], eight.sum(k));
@@ -73,9 +73,9 @@ impl Lighting {
     fn collect(&mut self, scene: &Scene, needs: SceneNeeds, tree: &mut Tree) {
         self.eights.clear();
         self.at_corners.clear();
-        let (nodes, all) = tree.parts();
+        let (nodes, rays, all) = tree.parts();
         for (number, hits) in all.iter().enumerate() {
-            self.eights.push(EightItems::new(number));
+            self.eights.push(EightItems::new(number, hits));
             let [.., eight] = &mut self.eights[..] else { continue };
             for k in 0..hits.count {
                 let node = &mut nodes[hits.nodes[k] as usize];
@@ -84,8 +84,8 @@ impl Lighting {
                 }
                 match scene.material(hits.tris[k]).surface {
                     Surface::AppColor => node.local = scene.tris.color(hits.tris[k]).unwrap_or(GzColor::ONE),
-                    Surface::Shaded => match Item::of(scene, needs, node, hits, k) {
-                        item if item.at_corners => self.at_corners.push((number, k, item)),
+                    Surface::Shaded => match Item::of(scene, needs, node, rays.directions[hits.nodes[k] as usize], hits, k) {
+                        item if item.is_at_corners() => self.at_corners.push((number, k, item)),
                         item => eight.add(k, &item),
                     },
                 }
@@ -106,7 +106,8 @@ impl Lighting {
         for (number, (eight, lit)) in eights.iter().zip(lit).enumerate() {
             let hits = &tree.hits()[eight.hits];
             for k in lanes(eight.lanes & lit.open) {
-                let item = Item::of(scene, needs, &tree.nodes[hits.nodes[k] as usize], hits, k);
+                let id = hits.nodes[k] as usize;
+                let item = Item::of(scene, needs, &tree.nodes[id], tree.rays.directions[id], hits, k);
                 let lit = item.lit_by(scene, needs, (hits, k), light, casting);
                 if let Some([color, ..]) = cast(lit, rays, stats) {
                     addends.push(Addend { eight: number as u32, k: k as u32, color });

@@ -9,6 +9,7 @@ use crate::source::closest_hits;
 use crate::{FrameStats, GlassBlend, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
 use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TriId};
+use std::ops::Range;
 
 /// What kind of ray it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +41,6 @@ pub(crate) struct Node {
     pub(crate) kind: RayKind,
     /// 0 for a camera ray.
     pub(crate) depth: u32,
-    pub(crate) ray: GzRay,
     pub(crate) hit: Hit,
     /// What the ray runs through.
     pub(crate) media: Media,
@@ -58,13 +58,12 @@ pub(crate) struct Node {
 
 impl Node {
     /// A camera ray, node `id`.
-    pub(crate) fn root(id: u32, ray: GzRay, hit: Hit) -> Self {
+    pub(crate) fn root(id: u32, hit: Hit) -> Self {
         Self {
             parent: NO_PARENT,
             root: id,
             kind: RayKind::Primary,
             depth: 0,
-            ray,
             hit,
             media: Media::AIR,
             factor: GzColor::ONE,
@@ -76,10 +75,38 @@ impl Node {
     }
 }
 
+/// The rays of nodes, by their numbers: two lists, which batches are parts of.
+#[derive(Debug, Default)]
+pub(crate) struct Rays {
+    origins: Vec<DVec3>,
+    pub(crate) directions: Vec<GzCoord>,
+    /// Where camera rays begin to count.
+    first_tmin: f32,
+}
+
+impl Rays {
+    pub(crate) fn push(&mut self, origin: DVec3, direction: GzCoord) {
+        self.origins.push(origin);
+        self.directions.push(direction);
+    }
+
+    /// The ray of node `id`.
+    pub(crate) fn ray(&self, id: u32, node: &Node, scene: &Scene) -> GzRay {
+        let tmin = if node.parent == NO_PARENT { self.first_tmin } else { scene.rules.leave.tmin() };
+        GzRay { tmin, ..GzRay::from_f64(self.origins[id as usize], self.directions[id as usize]) }
+    }
+
+    /// Origins and directions of eight rays.
+    pub(crate) fn eight(&self, ids: &[u32; 8]) -> ([[f64; 3]; 8], [[f32; 3]; 8]) {
+        (ids.map(|id| self.origins[id as usize].to_array()), ids.map(|id| self.directions[id as usize].to_array()))
+    }
+}
+
 /// All nodes of a tile or of a part of one, children after their parents, and the room that growing them takes.
 #[derive(Debug, Default)]
 pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
+    pub(crate) rays: Rays,
     /// Where the rays of the nodes hit, in the order of the nodes: the first `eights`; behind them is room.
     hits: Vec<EightHits>,
     eights: usize,
@@ -89,16 +116,21 @@ pub(crate) struct Tree {
     branches: Vec<Branch>,
     crowd: Crowd,
     flock: Flock,
-    origins: Vec<DVec3>,
-    directions: Vec<GzCoord>,
     leaves: Vec<TriId>,
     answers: Vec<Hit>,
 }
 
 impl Tree {
-    /// Forgets all nodes.
-    pub(crate) fn clear(&mut self) {
+    /// Begins anew with some camera rays and their hits.
+    pub(crate) fn plant(&mut self, rays: &RayBatch<'_>, hits: &[Hit], pixels: Range<usize>) {
         self.nodes.clear();
+        self.rays.origins.clear();
+        self.rays.directions.clear();
+        self.rays.first_tmin = rays.tmin.get(0);
+        for (id, pixel) in (0..).zip(pixels) {
+            self.nodes.push(Node::root(id, hits[pixel]));
+            self.rays.push(rays.origin.get(pixel), rays.direction.get(pixel));
+        }
         self.eights = 0;
         self.met = 0;
         self.media.clear();
@@ -127,13 +159,13 @@ impl Tree {
         if self.eights == self.hits.len() {
             self.hits.push(EightHits::NONE);
         }
-        self.hits[self.eights].take(scene, needs, &self.nodes, ids);
+        self.hits[self.eights].take(scene, needs, &self.nodes, &self.rays, ids);
         self.eights += 1;
     }
 
-    /// The nodes, and where their rays hit: in the order of the nodes, eight at a time.
-    pub(crate) fn parts(&mut self) -> (&mut [Node], &[EightHits]) {
-        (&mut self.nodes, &self.hits[..self.eights])
+    /// The nodes, their rays, and where those hit: in the order of the nodes, eight at a time.
+    pub(crate) fn parts(&mut self) -> (&mut [Node], &Rays, &[EightHits]) {
+        (&mut self.nodes, &self.rays, &self.hits[..self.eights])
     }
 
     /// Where the rays of the nodes hit.
@@ -167,7 +199,7 @@ impl Tree {
             let (media, branches) = (&mut self.media, &mut self.branches);
             let mut bouncer = Bouncer { scene, needs, media, branches, stats };
             for hits in &self.hits[level] {
-                bouncer.bounce(hits, &mut self.nodes);
+                bouncer.bounce(hits, &mut self.nodes, &self.rays);
             }
             // 2. The heaviest of those rays are the next level.
             self.crowd.thin(&mut self.branches, &mut self.nodes, scene.rules.mirror_blend, stats);
@@ -185,39 +217,30 @@ impl Tree {
 
     /// Traces the branches of one kind as a batch and adds them as nodes.
     fn trace(&mut self, kind: RayKind, scene: &Scene, needs: SceneNeeds, query: &dyn RayQuery, stats: &mut FrameStats) {
-        let (first, tmin) = (self.nodes.len(), scene.rules.leave.tmin());
-        self.origins.clear();
-        self.directions.clear();
+        let first = self.nodes.len();
         self.leaves.clear();
         for &number in self.flock.order(&self.branches, kind) {
             let branch = &self.branches[number as usize];
             let parent = &self.nodes[branch.parent as usize];
-            self.origins.push(branch.origin);
-            self.directions.push(branch.direction);
             self.leaves.push(parent.hit.tri);
-            // Field by field: a ray that is put together first is read back from memory in other pieces than it was written, which stalls.
+            self.rays.push(branch.origin, branch.direction);
             self.nodes.push(Node {
                 parent: branch.parent,
-                root: parent.root,
                 kind,
                 depth: parent.depth + 1,
-                ray: GzRay { origin: branch.origin, direction: branch.direction, tmin, tmax: f32::INFINITY },
-                hit: Hit::MISS,
                 media: branch.media,
                 factor: branch.factor,
                 weight: parent.weight * branch.factor,
-                keep: 1.0,
-                local: GzColor::ZERO,
-                color: GzColor::ZERO,
+                ..Node::root(parent.root, Hit::MISS)
             });
         }
         let count = self.nodes.len() - first;
         if count == 0 {
             return;
         }
-        let (origins, directions) = (PerRay::Each(&self.origins[..]), PerRay::Each(&self.directions[..]));
-        let rays = RayBatch::new(count, origins, directions, PerRay::One(tmin), PerRay::One(f32::INFINITY));
-        let rays = rays.leaving(&self.leaves);
+        let (origins, directions) = (PerRay::Each(&self.rays.origins[first..]), PerRay::Each(&self.rays.directions[first..]));
+        let (tmin, tmax) = (PerRay::One(scene.rules.leave.tmin()), PerRay::One(f32::INFINITY));
+        let rays = RayBatch::new(count, origins, directions, tmin, tmax).leaving(&self.leaves);
         self.answers.clear();
         self.answers.resize(count, Hit::MISS);
         closest_hits(query, scene.rules.leave, &rays, ClassMask::ALL, &mut self.answers);
@@ -239,14 +262,14 @@ impl Tree {
 
     /// What rays that hit nothing show: the background where colours blend as in physics, else a secondary ray adds nothing.
     pub(crate) fn show_background(&mut self, scene: &Scene, up: DVec3) {
-        for node in self.nodes.iter_mut().filter(|node| !node.hit.is_hit()) {
+        for (node, direction) in self.nodes.iter_mut().zip(&self.rays.directions).filter(|(node, _)| !node.hit.is_hit()) {
             let shows = match node.kind {
                 RayKind::Primary => true,
                 RayKind::Mirror => scene.rules.mirror_blend == MirrorBlend::Physical,
                 RayKind::Glass => scene.rules.glass_blend == GlassBlend::Physical,
             };
             if shows {
-                node.local = scene.background.color(node.ray.direction.as_dvec3(), up);
+                node.local = scene.background.color(direction.as_dvec3(), up);
             }
         }
     }

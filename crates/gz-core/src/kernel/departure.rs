@@ -8,11 +8,12 @@ use super::leaving::{Leaving, combine};
 use super::solution::{Bounded, Solution};
 use crate::ray::LEAST_ORIGIN;
 use crate::simd::{Doubles, EightDoubles, Simd, Task};
-use crate::{EightPoints, GzCoord, GzRay};
+use crate::{EightPoints, GzCoord};
 
 /// The points where rays have hit triangles, as [`crate::SurfacePoint::of`] has them; with places to leave from if `leaving`.
 pub(crate) struct FindPoints<'p> {
-    pub(crate) rays: &'p [GzRay; 8],
+    pub(crate) origins: &'p [[f64; 3]; 8],
+    pub(crate) directions: &'p [[f32; 3]; 8],
     pub(crate) corners: &'p [&'p [GzCoord; 3]; 8],
     pub(crate) leaving: bool,
     pub(crate) points: &'p mut EightPoints,
@@ -30,12 +31,7 @@ impl Task for FindPoints<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self) -> u32 {
-        let (mut origins, mut directions) = ([[0.0; 3]; 8], [[0.0; 3]; 8]);
-        for k in 0..8 {
-            origins[k] = self.rays[k].origin.to_array();
-            directions[k] = self.rays[k].direction.to_array();
-        }
-        let pairs = EightPairs::<S>::of(&origins, &directions, *self.corners);
+        let pairs = EightPairs::<S>::of(self.origins, self.directions, *self.corners);
         let corners = pairs.wide_corners();
 
         let solution = Solution::of(pairs.origin, pairs.direction, &corners);
