@@ -257,13 +257,14 @@ impl Bouncer<'_> {
             self.stats.weak_weight = self.stats.weak_weight.saturating_add(FrameStats::units(weight));
             return false;
         }
-        let way = direction.and_then(|(d, side)| Some((spot.hits.origin(self.scene, spot.k, d, side)?, d)));
-        let Some((origin, direction)) = way else {
-            self.stats.absorbed += 1;
-            return false;
-        };
-        self.branches.push(Branch { parent: id, kind, refracted, origin, direction, factor, media });
-        true
+        let branches = &mut *self.branches;
+        let went = direction.and_then(|(direction, side)| {
+            spot.hits.leave(self.scene, spot.k, direction, side, |origin| {
+                branches.push(Branch { parent: id, kind, refracted, origin, direction, factor, media });
+            })
+        });
+        self.stats.absorbed += u64::from(went.is_none());
+        went.is_some()
     }
 
     /// Whether the depth limit forbids branches here; counted, with the weight that they would have had.

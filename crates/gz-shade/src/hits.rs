@@ -53,12 +53,22 @@ impl EightHits {
         }
     }
 
-    /// Where a ray starts that leaves hit `k` along `direction`, to `side` of its triangle; `None` if there is no way out.
+    /// What `then` makes of the place where a ray starts that leaves hit `k` along `direction`, to `side` of its triangle; `None` if there is
+    /// no way out.
+    ///
+    /// A place that comes out of a `match` is put together in memory and read back in other pieces, which stalls: hence `then` in each arm.
     #[inline(always)]
-    pub(crate) fn origin(&self, scene: &Scene, k: usize, direction: GzCoord, side: i8) -> Option<DVec3> {
+    pub(crate) fn leave<R>(
+        &self,
+        scene: &Scene,
+        k: usize,
+        direction: GzCoord,
+        side: i8,
+        then: impl FnOnce(DVec3) -> R,
+    ) -> Option<R> {
         match scene.rules.leave {
-            LeavePolicy::Exact => self.at.start(k, side),
-            _ => self.other_origin(scene, k, direction),
+            LeavePolicy::Exact => self.at.start(k, side).map(then),
+            _ => self.other_origin(scene, k, direction).map(then),
         }
     }
 

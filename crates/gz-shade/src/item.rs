@@ -57,8 +57,9 @@ impl Lit {
     ) -> Self {
         let Some((arrival, side)) = casting else { return Self::Adds { color, start: None } };
         let (leaves, direction) = (hits.tris[k], arrival.direction);
-        match hits.origin(scene, k, direction, side) {
-            Some(origin) => Self::Adds { color, start: Some(ShadowRay { origin, direction, tmax: arrival.tmax, leaves }) },
+        let ray = |origin| ShadowRay { origin, direction, tmax: arrival.tmax, leaves };
+        match hits.leave(scene, k, direction, side, ray) {
+            Some(ray) => Self::Adds { color, start: Some(ray) },
             None => Self::InPlane,
         }
     }
@@ -66,6 +67,7 @@ impl Lit {
 
 impl Item {
     /// Hit `k` of `hits`, that of `node`, whose ray goes along `direction`, before any light.
+    #[inline(always)]
     pub(crate) fn of(scene: &Scene, needs: SceneNeeds, node: &Node, direction: GzCoord, hits: &EightHits, k: usize) -> Self {
         let (tris, rules, tri) = (&scene.tris, &scene.rules, hits.tris[k]);
         let material = scene.material(tri);

@@ -116,12 +116,12 @@ impl Lighting {
             for k in lanes(eight.lanes & !lit.open & !lit.dark) {
                 if casting {
                     let Arrival { direction, tmax, .. } = light.arrive(vector(&hits.at.point, k));
-                    let side = if lit.up >> k & 1 != 0 { 1 } else { -1 };
-                    let Some(origin) = hits.origin(scene, k, direction, side) else {
+                    let (side, leaves) = (if lit.up >> k & 1 != 0 { 1 } else { -1 }, hits.tris[k]);
+                    let cast = |origin| rays.push(&ShadowRay { origin, direction, tmax, leaves });
+                    if hits.leave(scene, k, direction, side, cast).is_none() {
                         stats.absorbed += 1;
                         continue;
-                    };
-                    rays.push(&ShadowRay { origin, direction, tmax, leaves: hits.tris[k] });
+                    }
                 }
                 addends.push(Addend { eight: number as u32, k: k as u32, color: lit.color(k) });
             }
