@@ -21,7 +21,7 @@ pub struct Frame {
 
 /// The most pixels of a tile that are shaded at a time: their rays, a few hundred bytes each and a few for each pixel, are gone over several
 /// times and stay in the cache of one processor core.
-const MOST_AT_A_TIME: usize = 1 << 8;
+const MOST_AT_A_TIME: usize = 1 << 9;
 
 /// Room for the work on one tile, kept from tile to tile.
 ///
