@@ -192,3 +192,58 @@ fn schlick<D: EightDoubles>(cos: D, eta: D) -> D {
     let square = m.times(m);
     r0.plus(square.times(square).times(m).times(one.minus(r0)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hits::tests::{dice, eight};
+    use crate::optics::reflectance;
+    use crate::reflection::reflect;
+    use crate::refraction::refract;
+    use gz_core::SimdLevel;
+
+    #[test]
+    fn shares_and_directions_are_those_of_the_plain_formulas_at_every_level() {
+        let (mut unit, mut total, mut told) = (dice(), 0, 0);
+        for round in 0..300u32 {
+            let (tris, mut hits, rays) = eight(&mut unit);
+            for k in 0..8 {
+                let leaning = GzCoord::new(unit(), unit(), unit()).as_dvec3();
+                set(&mut hits.normal, k, (vector(&hits.at.normal, k) + leaning * 0.3).normalize());
+                hits.outside[k] = if unit() < 0.0 { 1 } else { -1 };
+            }
+            let directions = rays.map(|ray| ray.direction.to_array());
+            let eta = std::array::from_fn(|k| [1.0, 1.5, 1.0 / 1.5, 0.2, 7.0][(round as usize + k) % 5]);
+            let rule = if round % 2 == 0 { Fresnel::Exact } else { Fresnel::Schlick };
+            for &level in SimdLevel::available() {
+                let geometric = round % 3 != 0;
+                let to_side = hits.at.to_side;
+                let (meetings, leaning) = dispatch(level, Meet { hits: &hits, directions: &directions, to_side, geometric });
+                for k in 0..8 {
+                    let (d, stored) = (rays[k].direction.as_dvec3().normalize_or_zero(), vector(&hits.normal, k));
+                    let entering = if geometric { hits.outside[k] != to_side[k] } else { d.dot(stored) < 0.0 };
+                    assert_eq!((vector(&meetings.d, k), meetings.entering >> k & 1 != 0), (d, entering));
+                    let n = if entering { stored } else { -stored };
+                    assert_eq!((vector(&meetings.n, k), leaning >> k & 1 != 0), (n, geometric && d.dot(n) > 0.0));
+                    assert_eq!(meetings.cos[k], (-d.dot(n)).clamp(0.0, 1.0));
+                }
+                let bends = dispatch(level, Bend { hits: &hits, meetings: &meetings, eta: &eta, rule, refracting: true });
+                for k in 0..8 {
+                    let (d, n) = (vector(&meetings.d, k), vector(&meetings.n, k));
+                    assert_eq!(bends.share[k], reflectance(rule, meetings.cos[k], eta[k]), "{rule:?} {} at {level:?}", eta[k]);
+                    let corners = tris.position(hits.tris[k]);
+                    let reflected = reflect(d, n).as_vec3();
+                    assert_eq!(bends.reflected.lane(k, &tris, &hits), (reflected, side_of(corners, reflected)));
+                    let refracted = refract(d, n, eta[k]).map(|direction| direction.as_vec3());
+                    assert_eq!(bends.total >> k & 1 != 0, refracted.is_none());
+                    total += u32::from(refracted.is_none());
+                    if let Some(refracted) = refracted {
+                        assert_eq!(bends.refracted.lane(k, &tris, &hits), (refracted, side_of(corners, refracted)));
+                        told += 1;
+                    }
+                }
+            }
+        }
+        assert!(total > 500 && told > 2000, "{total} reflected totally, {told} refracted");
+    }
+}

@@ -125,3 +125,84 @@ impl Task for FindNormals<'_> {
         !(up | down) & 0xff
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::eight::vector;
+    use gz_core::{Attributes, GzRay, GzTri, TriBuffer, side_of};
+
+    /// Numbers from -1 to 1.
+    pub(crate) fn dice() -> impl FnMut() -> f32 {
+        let mut state = 7u64;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / (1u64 << 23) as f32 - 1.0
+        }
+    }
+
+    /// Eight triangles with normals of all kinds (leaning, opposite, none, in the plane), and rays that hit them.
+    pub(crate) fn eight(unit: &mut impl FnMut() -> f32) -> (TriBuffer, EightHits, [GzRay; 8]) {
+        let mut tris = TriBuffer::with_attributes(Attributes::ALL, 1);
+        let mut any = || GzCoord::new(unit(), unit(), unit());
+        let rays = std::array::from_fn(|k| {
+            let positions = [any(), any(), any()];
+            let face = (positions[1] - positions[0]).cross(positions[2] - positions[0]).normalize();
+            let normals = match k {
+                0 => [GzCoord::ZERO; 3],
+                1 => [GzCoord::X, GzCoord::NEG_X, GzCoord::ZERO],
+                2 => [(positions[1] - positions[0]).normalize(); 3],
+                3 => [-face; 3],
+                _ => std::array::from_fn(|_| (face + any() * 0.7).normalize()),
+            };
+            tris.push(&GzTri { positions, normals, ..GzTri::default() }).unwrap();
+            let towards = any();
+            GzRay::new((positions[0] + positions[1] + positions[2]) / 3.0 - towards, towards)
+        });
+        let mut hits = EightHits { count: 8, tris: std::array::from_fn(|k| k as TriId), ..EightHits::NONE };
+        let corners = hits.tris.map(|tri| tris.position(tri));
+        let (origins, directions) = (rays.map(|ray| ray.origin.to_array()), rays.map(|ray| ray.direction.to_array()));
+        hits.at.find(&origins, &directions, &corners, true, SimdLevel::Portable);
+        (tris, hits, rays)
+    }
+
+    #[test]
+    fn normals_and_outer_sides_are_those_of_one_hit_at_every_level() {
+        let (mut unit, mut open_lanes) = (dice(), 0);
+        for round in 0..200u32 {
+            let (tris, hits, _) = eight(&mut unit);
+            let (stored, smooth) = (0xff & !(round & 16), 0xff & !(round & 16) & !(round & 15));
+            let normals = hits.tris.map(|tri| nine(tris.normals(tri).unwrap()));
+            let bare = TriBuffer::from_indexed(tris.positions().as_flattened(), &hits.tris.map(|t| [3 * t, 3 * t + 1, 3 * t + 2]));
+            let bare = bare.unwrap();
+            for &level in SimdLevel::available() {
+                let (mut rows, mut sides) = ([[0.0; 8]; 3], [0; 8]);
+                let (at, normal, outside) = (&hits.at, &mut rows, &mut sides);
+                let open = dispatch(level, FindNormals { at, normals: &normals, stored, smooth, normal, outside });
+                open_lanes += open.count_ones();
+                for k in lanes(0xff & !open) {
+                    let tris = if stored >> k & 1 != 0 { &tris } else { &bare };
+                    let how = if smooth >> k & 1 != 0 { Interpolate::Phong } else { Interpolate::Flat };
+                    let at = hits.at.lane(k);
+                    let n = interpolate::normal(tris, SceneNeeds::ALL, hits.tris[k], &at, how, at.weights);
+                    assert_eq!((vector(&rows, k), sides[k]), (n, interpolate::outside(tris, SceneNeeds::ALL, hits.tris[k], &at)));
+                }
+            }
+        }
+        // Normals that cancel, or lie in the plane to a rounding or two, are open; the others are not.
+        let of = 200 * 8 * SimdLevel::available().len() as u32;
+        assert!(open_lanes > of / 8 && open_lanes < of / 2, "{open_lanes} of {of} open");
+    }
+
+    #[test]
+    fn a_ray_leaves_to_the_side_that_it_is_told() {
+        let (tris, hits, _) = eight(&mut dice());
+        for k in 0..8 {
+            let corners = tris.position(hits.tris[k]);
+            for direction in [GzCoord::X, GzCoord::new(0.3, -0.4, 0.5)] {
+                let side = side_of(corners, direction);
+                assert_eq!(hits.at.start(k, side), gz_core::leave_surface(corners, hits.at.lane(k).weights, direction));
+            }
+        }
+    }
+}

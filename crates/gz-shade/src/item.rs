@@ -14,7 +14,7 @@ use gz_core::{GzColor, GzCoord};
 #[derive(Debug)]
 pub(crate) struct Item {
     /// Where it is shaded at the corners.
-    corners: Option<AtCorners>,
+    pub(crate) corners: Option<AtCorners>,
     /// The unit normal, where it is not that of the hit.
     pub(crate) n: Option<DVec3>,
     /// To the viewer.
@@ -28,7 +28,7 @@ pub(crate) struct Item {
 
 /// What becomes of colours at the corners.
 #[derive(Debug)]
-struct AtCorners {
+pub(crate) struct AtCorners {
     /// The weights of the corners: linear in screen space where the rules say so.
     weights: [f64; 3],
     /// Multiplies the interpolated colour.

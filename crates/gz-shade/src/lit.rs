@@ -223,3 +223,64 @@ impl Task for LightAll<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Falloff;
+    use crate::hits::tests::{dice, eight};
+    use crate::phong::{Coefficients, light_share};
+    use gz_core::simd::dispatch;
+    use gz_core::{GzCoord, SimdLevel, side_of};
+
+    #[test]
+    fn what_a_light_adds_is_what_it_adds_to_one_hit_at_every_level() {
+        let (mut unit, mut dark, mut bright, mut open) = (dice(), 0, 0, 0);
+        for round in 0..300usize {
+            let (tris, hits, rays) = eight(&mut unit);
+            let mut items = EightItems::new(0, &hits);
+            let of: [Item; 8] = std::array::from_fn(|k| {
+                // A round of whole powers only, and one of all.
+                let power = [0.0, 1.0, 40.0, 65535.0, 65536.0, 2.5, 1e9, 7.0][if round % 2 == 0 { k % 4 } else { k }];
+                let color = |x: f32| GzColor::new(x.abs(), 0.5, x * x);
+                let ks = if (round + k) % 3 == 0 { GzColor::ZERO } else { color(unit()) };
+                let coefficients = Coefficients { ka: GzColor::ONE, kd: color(unit()), ks, power };
+                let n = GzCoord::new(unit(), unit(), unit()).as_dvec3().normalize();
+                let viewer = if round % 5 == 0 { 0 } else { -hits.at.to_side[k] };
+                Item { corners: None, n: Some(n), e: -rays[k].direction, viewer, k: coefficients, sum: [GzColor::ZERO; 3] }
+            });
+            of.iter().enumerate().for_each(|(k, item)| items.add(k, item));
+            let place = GzCoord::new(unit(), unit(), unit()).as_dvec3() * 3.0;
+            let kind = if round % 3 == 0 {
+                LightKind::Point { position: place, falloff: Falloff { c0: 1.0, c1: 0.1, c2: 0.0 } }
+            } else {
+                LightKind::Directional(place.normalize())
+            };
+            let (light, casting) = (GzLight { kind, color: GzColor::new(0.9, 0.6, 0.0) }, round % 2 == 0);
+            for &level in SimdLevel::available() {
+                let mut lit = Vec::new();
+                let (items, hits, light) = (std::slice::from_ref(&items), std::slice::from_ref(&hits), &light);
+                dispatch(level, LightAll { items, hits, light, casting, lit: &mut lit });
+                for (k, item) in of.iter().enumerate() {
+                    let arrival = light.arrive(vector(&hits[0].at.point, k));
+                    let side = side_of(tris.position(hits[0].tris[k]), arrival.direction);
+                    if lit[0].open >> k & 1 != 0 {
+                        open += 1;
+                        continue;
+                    }
+                    let share = light_share(&item.k, item.n.unwrap(), arrival.to_light, item.e.as_dvec3()) * arrival.color;
+                    let adds = share != GzColor::ZERO && (item.viewer == 0 || side == item.viewer);
+                    assert_eq!(lit[0].dark >> k & 1 == 0, adds, "round {round} lane {k} at {level:?}");
+                    if adds {
+                        bright += 1;
+                        assert_eq!(lit[0].color(k), share, "round {round} lane {k} at {level:?}");
+                        assert!(!casting || (lit[0].up >> k & 1 != 0) == (side == 1));
+                    } else {
+                        dark += 1;
+                    }
+                }
+            }
+        }
+        assert!(dark > 1000 && bright > 1000 && open < 50, "{dark} dark, {bright} bright, {open} open");
+    }
+}
