@@ -1,20 +1,19 @@
 //! The camera models and the homework's camera matrices.
 
 use crate::camera_spec::{CameraError, CameraModel, CameraSpec};
-use crate::simd::{Doubles, EightDoubles, Lanes, Simd, Task, dispatch};
-use crate::{GzCoord, GzMatrix, GzRay, PerRay, RayBatch, SimdLevel};
+use crate::{GzCoord, GzMatrix, GzRay};
 use glam::{DVec2, DVec3};
 
 /// A camera ready to make primary rays. The homework's `GzCamera`.
 #[derive(Clone, Debug)]
 pub struct GzCamera {
-    spec: CameraSpec,
+    pub(crate) spec: CameraSpec,
     /// Camera axes in world space: right, up, forward.
-    axes: [DVec3; 3],
+    pub(crate) axes: [DVec3; 3],
     /// 1 / tan(fov / 2): distance of the centre of projection from the view plane of half-height 1.
-    d: f64,
+    pub(crate) d: f64,
     /// Half the extent of the view plane along x, for half-height 1.
-    half_width: f64,
+    pub(crate) half_width: f64,
 }
 
 impl GzCamera {
@@ -146,49 +145,6 @@ impl GzCamera {
         GzRay::from_f64(self.common_origin(), GzCoord::from_array(self.direction(x, y).map(|x| x as f32)))
     }
 
-    /// The direction, at length 1, of the ray through the place (`x`, `y`) of the picture, in pixels, for models with a centre.
-    #[inline(always)]
-    fn direction<D: Doubles>(&self, x: D, y: D) -> [D; 3] {
-        let (one, two) = (D::splat(1.0), D::splat(2.0));
-        let (width, height) = (D::splat(f64::from(self.spec.width)), D::splat(f64::from(self.spec.height)));
-        let v = if self.spec.model == CameraModel::Pinhole {
-            let half = D::splat(0.5);
-            let x = two.times(x.plus(half)).over(width).minus(one).times(D::splat(self.half_width));
-            let y = one.minus(two.times(y.plus(half)).over(height));
-            let mut v = [one; 3];
-            for (axis, v) in v.iter_mut().enumerate() {
-                let [right, up, forward] = &self.axes;
-                let ahead = D::splat(forward[axis] * self.d);
-                *v = D::splat(right[axis]).times(x).plus(D::splat(up[axis]).times(y)).plus(ahead);
-            }
-            v
-        } else {
-            let (x, y) = (two.times(x).over(width).minus(one), one.minus(two.times(y).over(height)));
-            [x, y, D::splat(self.d)]
-        };
-        let length = v[0].times(v[0]).plus(v[1].times(v[1])).plus(v[2].times(v[2])).sqrt();
-        [v[0].over(length), v[1].over(length), v[2].over(length)]
-    }
-
-    /// The primary rays of `pixels` at one `offset`, as a batch that knows what they share. Row `k` is for `pixels[k]`.
-    pub fn rays<'a>(&self, pixels: &[(u32, u32)], offset: DVec2, store: &'a mut PrimaryRays) -> RayBatch<'a> {
-        store.origins.clear();
-        store.directions.clear();
-        if self.spec.model == CameraModel::Screen {
-            store.origins.extend(pixels.iter().map(|&(i, j)| self.ray(i, j, offset).origin));
-            let tmin = self.ray(0, 0, offset).tmin;
-            return RayBatch::new(
-                pixels.len(),
-                PerRay::Each(&store.origins),
-                PerRay::One(GzCoord::Z),
-                PerRay::One(tmin),
-                PerRay::One(f32::INFINITY),
-            );
-        }
-        dispatch(SimdLevel::best(), Directions { camera: self, pixels, offset, directions: &mut store.directions });
-        RayBatch::unbounded(pixels.len(), PerRay::One(self.common_origin()), PerRay::Each(&store.directions))
-    }
-
     /// Weights of a triangle's corners that are linear in screen space, from the weights at the hit of a primary ray.
     ///
     /// The homework interpolates colours and normals so. Under homework a corner's weight is multiplied by its w = z/d + 1 and the
@@ -203,47 +159,11 @@ impl GzCamera {
     }
 
     /// Where all primary rays start, for the models that have such a point.
-    fn common_origin(&self) -> DVec3 {
+    pub(crate) fn common_origin(&self) -> DVec3 {
         match self.spec.model {
             CameraModel::Homework => DVec3::new(0.0, 0.0, -self.d),
             CameraModel::Pinhole => self.spec.view.map_or(DVec3::ZERO, |view| view.position),
             CameraModel::Paper | CameraModel::Screen => DVec3::ZERO,
-        }
-    }
-}
-
-/// Room for the primary rays of a batch, kept between batches.
-#[derive(Clone, Debug, Default)]
-pub struct PrimaryRays {
-    origins: Vec<DVec3>,
-    directions: Vec<GzCoord>,
-}
-
-/// Directions of primary rays, eight pixels at a time.
-struct Directions<'a> {
-    camera: &'a GzCamera,
-    pixels: &'a [(u32, u32)],
-    offset: DVec2,
-    directions: &'a mut Vec<GzCoord>,
-}
-
-impl Task for Directions<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self) {
-        for pixels in self.pixels.chunks(8) {
-            let (mut x, mut y) = ([0.0; 8], [0.0; 8]);
-            for (k, &(i, j)) in pixels.iter().enumerate() {
-                (x[k], y[k]) = (f64::from(i), f64::from(j));
-            }
-            let x = <S::Doubles>::load(&x).plus(<S::Doubles>::splat(self.offset.x));
-            let y = <S::Doubles>::load(&y).plus(<S::Doubles>::splat(self.offset.y));
-            let d = self.camera.direction(x, y);
-            let d = [S::narrow(d[0]).array(), S::narrow(d[1]).array(), S::narrow(d[2]).array()];
-            for k in 0..pixels.len() {
-                self.directions.push(GzCoord::new(d[0][k], d[1][k], d[2][k]));
-            }
         }
     }
 }

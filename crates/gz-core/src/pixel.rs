@@ -1,7 +1,6 @@
 //! The T-value pixel and buffer: what the homework's Z-buffer became.
 
-use crate::camera::PrimaryRays;
-use crate::{ClassMask, GzCamera, Hit, RayBatch, RayQuery, Tile, TileGrid, TriBuffer};
+use crate::{ClassMask, GzCamera, Hit, PrimaryRays, RayBatch, RayQuery, Tile, TileGrid, TriBuffer};
 use glam::{DVec2, DVec3};
 
 /// What a primary ray found: the triangle, its T-value in place of the homework's z, and the point of the hit.

@@ -173,7 +173,8 @@ pub(crate) mod tests {
             let (tris, hits, _) = eight(&mut unit);
             let (stored, smooth) = (0xff & !(round & 16), 0xff & !(round & 16) & !(round & 15));
             let normals = hits.tris.map(|tri| nine(tris.normals(tri).unwrap()));
-            let bare = TriBuffer::from_indexed(tris.positions().as_flattened(), &hits.tris.map(|t| [3 * t, 3 * t + 1, 3 * t + 2]));
+            let bare =
+                TriBuffer::from_indexed(tris.positions().as_flattened(), &hits.tris.map(|t| [3 * t, 3 * t + 1, 3 * t + 2]));
             let bare = bare.unwrap();
             for &level in SimdLevel::available() {
                 let (mut rows, mut sides) = ([[0.0; 8]; 3], [0; 8]);
