@@ -151,6 +151,8 @@ impl BspTree<'_> {
             return false;
         }
         let beam = Beam::of::<S>(quest.bundle(), slabs, way, company);
+        // In memory, or its splats are held, and spilled, all through the loop over packets.
+        let beam = std::hint::black_box(&beam);
         let mut greatest_limit = greatest::<S>(&quest.bundle().limit, company);
         let mut spans = Spans::default();
         // Rays whose quest is not over, and those of them that cross the node.
