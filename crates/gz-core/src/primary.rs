@@ -79,9 +79,9 @@ impl Task for Directions<'_> {
             let y = <S::Doubles>::load(&y).plus(<S::Doubles>::splat(self.offset.y));
             let d = self.camera.direction(x, y);
             let d = [S::narrow(d[0]).array(), S::narrow(d[1]).array(), S::narrow(d[2]).array()];
-            for k in 0..pixels.len() {
-                self.directions.push(GzCoord::new(d[0][k], d[1][k], d[2][k]));
-            }
+            let [x, y, z] = &d;
+            let eight = x.iter().zip(y).zip(z).map(|((&x, &y), &z)| GzCoord::new(x, y, z));
+            self.directions.extend(eight.take(pixels.len()));
         }
     }
 }

@@ -14,7 +14,7 @@ pub struct SurfacePoint {
     pub point: DVec3,
     /// The side of the triangle's plane that the ray goes to, see [`side_of`].
     pub to_side: i8,
-    /// Unit normal of the triangle, on the side of its winding: [`TriBuffer::face_normal`]. Zero for a triangle without area.
+    /// Unit normal of the triangle, on the side of its winding: [`crate::TriBuffer::face_normal`]. Zero for a triangle without area.
     pub normal: DVec3,
     /// How much the normal's product with a direction may be off for each unit of the direction's coordinates, added.
     pub(crate) lean: f64,

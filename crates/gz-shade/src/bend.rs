@@ -1,4 +1,6 @@
 //! How rays meet mirrors and glass and are bent there, eight at a time: the formulas of `reflection`, `refraction` and `optics` with their bits.
+// Lanes and channels are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
 
 use crate::Fresnel;
 use crate::eight::{

@@ -63,7 +63,7 @@ impl Spot<'_> {
     }
 
     /// The side of the triangle that the ray goes to.
-    fn to_side(&self) -> i8 {
+    fn goes_to(&self) -> i8 {
         self.meetings.to_side[self.k]
     }
 
@@ -206,7 +206,7 @@ impl Bouncer<'_> {
             self.emit(id, node, spot, direction, back);
         }
         if passes {
-            let (bent, to_side) = (spot.bends.refracted.lane(spot.k, &scene.tris, spot.hits), spot.to_side());
+            let (bent, to_side) = (spot.bends.refracted.lane(spot.k, &scene.tris, spot.hits), spot.goes_to());
             let direction = self.on_side(spot, bent, to_side, |d, n| refract(d, n, eta).unwrap_or(d));
             self.emit(id, node, spot, direction, Bounce { refracted: true, factor: through, media: after, ..back });
         }
@@ -217,7 +217,7 @@ impl Bouncer<'_> {
     #[inline(always)]
     fn reflected(&mut self, spot: Spot<'_>) -> Option<(GzCoord, i8)> {
         let bent = spot.bends.reflected.lane(spot.k, &self.scene.tris, spot.hits);
-        self.on_side(spot, bent, -spot.to_side(), reflect)
+        self.on_side(spot, bent, -spot.goes_to(), reflect)
     }
 
     /// The direction `bent` if it leads to `side` of the triangle; else mirrored at the triangle's plane and counted, which is the same

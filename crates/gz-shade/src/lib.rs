@@ -2,8 +2,9 @@
 //!
 //! Nothing here names a tree or reads a file; visibility is asked through [`gz_core::RayQuery`]. The steps, each in its own file:
 //! `frame` goes tile by tile, `tree` follows mirror and glass rays (`bounce` says where they go, by the formulas in `reflection`,
-//! `refraction`, `optics` and `media`, `crowd` which of too many end), `local` shades hits light by light (`phong` with `interpolate`, `texture`, `shadow`), `aa` sums
-//! samples, and `color` writes channels. `needs` says which of these a scene can do without.
+//! `refraction`, `optics` and `media`, `crowd` which of too many end, `flock` in which order they are asked), `local` shades hits light by
+//! light (`phong` with `interpolate`, `texture`, `shadow`), `aa` sums samples, and `color` writes channels. `hits`, `bend` and `lit` work on
+//! eight hits at once what `item` and those formulas say of one, with the same bits. `needs` says which of these a scene can do without.
 #![forbid(unsafe_code)]
 
 mod aa;

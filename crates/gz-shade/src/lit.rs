@@ -1,6 +1,8 @@
 //! How a light meets eight hits at a time: the shading equation of [`light_share`] and the sides that shadow rays go to.
 //!
 //! [`light_share`]: crate::phong::light_share
+// Lanes and channels are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
 
 use crate::eight::{Rows, coord, dot, lanes, load, minus, set, signs, times, unit_range, vector, widen};
 use crate::hits::EightHits;

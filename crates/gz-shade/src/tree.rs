@@ -25,7 +25,7 @@ pub enum RayKind {
 /// The parent of a node that has none.
 pub(crate) const NO_PARENT: u32 = u32::MAX;
 
-/// The most nodes that a tree of several roots grows to: about 350 bytes each, with what shading them takes.
+/// The most nodes that a tree of several roots grows to: about 400 bytes each, with what shading them takes.
 pub(crate) const MAX_NODES: usize = 1 << 16;
 
 /// A tree of several roots would pass [`MAX_NODES`].
