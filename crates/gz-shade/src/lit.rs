@@ -31,7 +31,7 @@ pub(crate) struct EightItems {
     ks: Colors,
     /// The lanes that have highlights, and their powers.
     shiny: u32,
-    power: [f32; 8],
+    powers: Powers,
     /// The equation so far.
     sum: Colors,
 }
@@ -40,8 +40,8 @@ impl EightItems {
     /// None yet of hits number `number`, `hits`.
     pub(crate) fn new(number: usize, hits: &EightHits) -> Self {
         let none = [[0.0; 8]; 3];
-        let (n, e, kd, ks, power, sum) = (hits.normal, none, none, none, [0.0; 8], none);
-        Self { hits: number, lanes: 0, viewers: [0; 2], n, e, kd, ks, shiny: 0, power, sum }
+        let (n, e, kd, ks, powers, sum) = (hits.normal, none, none, none, Powers::default(), none);
+        Self { hits: number, lanes: 0, viewers: [0; 2], n, e, kd, ks, shiny: 0, powers, sum }
     }
 
     /// Adds hit number `k`, which is not shaded at the corners.
@@ -60,7 +60,7 @@ impl EightItems {
             self.sum[channel][k] = item.sum[0][channel];
         }
         self.shiny |= u32::from(item.k.ks != GzColor::ZERO) << k;
-        self.power[k] = item.k.power;
+        self.powers.set(k, item.k.power);
     }
 
     /// Adds `color` to the equation of hit `k`.
@@ -106,7 +106,7 @@ impl EightItems {
         let shiny = self.shiny & self.lanes & (front | back) & !lit.dark;
         if shiny != 0 {
             let r = minus(&times(&n, <S::Doubles>::splat(2.0).times(nl)), &l);
-            let highlight = S::narrow(powers(unit_range(dot(&r, &e)), &self.power, shiny));
+            let highlight = S::narrow(self.powers.of(unit_range(dot(&r, &e)), shiny));
             for channel in 0..3 {
                 let with = color[channel].plus(<S::Eight>::load(&self.ks[channel]).times(highlight));
                 color[channel] = with.select(self.shiny, color[channel]);
@@ -151,35 +151,53 @@ impl<S: Simd> Arrivals<S> {
     }
 }
 
-/// `base`, in [0, 1], to the `powers`, as [`power`] has it, in `wanted` lanes.
-#[inline(always)]
-fn powers<D: EightDoubles>(base: D, powers: &[f32; 8], wanted: u32) -> D {
-    // Whole powers of fewer than 16 bits by repeated squaring, all lanes in step.
-    let (mut bits, mut whole) = ([0; 8], 0);
-    for k in 0..8 {
-        bits[k] = powers[k] as u16;
-        whole |= u32::from(f32::from(bits[k]) == powers[k]) << k;
+/// Eight powers of highlights.
+#[derive(Debug, Default)]
+struct Powers {
+    exact: [f32; 8],
+    /// The same where they are whole and have at most 16 bits.
+    whole: [u16; 8],
+    /// The lanes where they are not.
+    others: u32,
+}
+
+impl Powers {
+    fn set(&mut self, k: usize, power: f32) {
+        self.exact[k] = power;
+        self.whole[k] = power as u16;
+        self.others |= u32::from(f32::from(self.whole[k]) != power) << k;
     }
-    if wanted & !whole != 0 {
-        let mut each = base.array();
+
+    /// `base`, in [0, 1], to these powers, as [`power`] has it, in `wanted` lanes.
+    #[inline(always)]
+    fn of<D: EightDoubles>(&self, base: D, wanted: u32) -> D {
+        if wanted & self.others != 0 {
+            return D::load(&self.each(base.array(), wanted));
+        }
+        // By repeated squaring, all lanes in step.
+        let (mut result, mut square, mut bits) = (D::splat(1.0), base, self.whole);
+        loop {
+            let (mut odd, mut rest) = (0, 0);
+            for k in 0..8 {
+                odd |= u32::from(bits[k] & 1) << k;
+                bits[k] >>= 1;
+                rest |= bits[k];
+            }
+            result = result.times(square).select(odd, result);
+            if rest == 0 {
+                return result;
+            }
+            square = square.times(square);
+        }
+    }
+
+    /// The same, lane by lane.
+    #[inline(never)]
+    fn each(&self, mut base: [f64; 8], wanted: u32) -> [f64; 8] {
         for k in lanes(wanted) {
-            each[k] = power(each[k], powers[k]);
+            base[k] = power(base[k], self.exact[k]);
         }
-        return D::load(&each);
-    }
-    let (mut result, mut square) = (D::splat(1.0), base);
-    loop {
-        let (mut odd, mut rest) = (0, 0);
-        for k in 0..8 {
-            odd |= u32::from(bits[k] & 1) << k;
-            bits[k] >>= 1;
-            rest |= bits[k];
-        }
-        result = result.times(square).select(odd, result);
-        if rest == 0 {
-            return result;
-        }
-        square = square.times(square);
+        base
     }
 }
 

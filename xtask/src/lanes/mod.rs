@@ -1,4 +1,4 @@
-//! `cargo xtask lanes`: the generated code of the walk, as it is compiled for AVX2 and AVX-512.
+//! `cargo xtask lanes`: the generated code of the walk and of shading, as it is compiled for AVX2 and AVX-512.
 //!
 //! Code over lanes is compiled for a set of instructions only where it is inlined into the function that stands for that set. A call from
 //! there to a kernel, or to a closure that was not inlined, runs what the build target guarantees, and nothing but the time tells. So the
@@ -13,12 +13,23 @@ use listing::Function;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Functions that stand for a set of instructions, and the tasks whose instances must be there: words of a path in order, the last one its end.
+/// Functions that stand for a set of instructions.
 const LEVELS: [&str; 2] = ["run_avx2", "run_avx512"];
-const TASKS: [&str; 3] = ["ClosestTask", "AnyTask Stopped", "AnyTask GoingThrough"];
+
+/// A library, and the tasks whose instances must be there at each level: words of a path in order, the last one its end.
+struct Library {
+    package: &'static str,
+    tasks: &'static [&'static str],
+}
+
+const LIBRARIES: [Library; 3] = [
+    Library { package: "gz-core", tasks: &["Directions", "FindPoints"] },
+    Library { package: "gz-bsp", tasks: &["ClosestTask", "AnyTask Stopped", "AnyTask GoingThrough"] },
+    Library { package: "gz-shade", tasks: &["FindNormals", "Meet", "Bend", "LightAll"] },
+];
 
 /// What a hot function may call, by words of its path that stand together, and why.
-const ALLOWED: [(&str, &str); 32] = [
+const ALLOWED: [(&str, &str); 34] = [
     ("memcpy", "copies"),
     ("memset", "copies"),
     ("memmove", "copies"),
@@ -33,7 +44,7 @@ const ALLOWED: [(&str, &str); 32] = [
     ("core::ptr::drop_in_place", "once a batch"),
     ("__rustc::__rust_dealloc", "once a batch"),
     ("together::Queue::grow", "cold: the queue is full"),
-    ("alloc::raw_vec", "a list of what rays meet is full"),
+    ("alloc::raw_vec", "a list is full"),
     ("passage::GoingThrough::sort", "once a bundle, where rays meet something"),
     ("passage::in_order", "once a bundle, where rays meet something"),
     ("query::RayBatch::ray", "one ray by itself, set up for the exact test"),
@@ -51,10 +62,12 @@ const ALLOWED: [(&str, &str); 32] = [
     ("BspTree::far_answers", "cold: rays beyond the range of f32"),
     ("kernel::exact", "cold: what f64 cannot prove"),
     ("robust", "cold: what f64 cannot prove"),
+    ("lit::Powers::each", "powers that are no whole numbers, lane by lane"),
+    ("light::GzLight::arrive", "a light that each lane sees from elsewhere"),
 ];
 
 /// Where arithmetic on single numbers is expected, and why. It is told, and not an error elsewhere.
-const SCALAR: [(&str, &str); 10] = [
+const SCALAR: [(&str, &str); 13] = [
     ("kernel/filter.rs", "the bounds of a bundle or of one ray"),
     ("kernel/bundle.rs", "the bounds of a bundle, one ray taken out of it"),
     ("cost/batch.rs", "the bounds of a bundle, one ray taken out of it"),
@@ -63,60 +76,84 @@ const SCALAR: [(&str, &str); 10] = [
     ("kernel/nearest.rs", "the best hit of one ray"),
     ("cost/walk.rs", "the order of a ray's stack"),
     ("cost/together.rs", "the order of a bundle's queue"),
+    ("gz-core/src/primary.rs", "the camera"),
+    ("gz-shade/src/light.rs", "a light that each lane sees from elsewhere"),
+    ("f64/dvec3.rs", "a light that each lane sees from elsewhere"),
     ("core_arch/", "the least and the greatest lane"),
     ("library/core/", "helpers of the above"),
 ];
 
-/// Checks the listing that is named, or that of the library as it is now.
+/// Checks the listing that is named, or those of the libraries as they are now.
 pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
-    let path = match arguments {
-        [] => build()?,
-        [file] if !file.starts_with('-') => PathBuf::from(file),
+    let listings = match arguments {
+        [] => LIBRARIES.iter().map(|library| Ok((library, build(library)?))).collect::<Result<Vec<_>, Failure>>()?,
+        [file] if !file.starts_with('-') => vec![(named(Path::new(file))?, PathBuf::from(file))],
         _ => return Err(Failure { message: "lanes takes nothing, or a listing with v0 symbols".to_owned(), code: 2 }),
     };
-    let text =
-        std::fs::read_to_string(&path).map_err(|error| Failure { message: format!("{}: {error}", path.display()), code: 1 })?;
-    let (report, faults) = judge(&text);
-    print!("{report}");
+    let mut faults = Vec::new();
+    for (library, path) in listings {
+        let text = std::fs::read_to_string(&path)
+            .map_err(|error| Failure { message: format!("{}: {error}", path.display()), code: 1 })?;
+        let (report, found) = judge(&text, library.tasks);
+        print!("{report}");
+        faults.extend(found);
+    }
     match faults.len() {
         0 => Ok(()),
         n => Err(Failure { message: format!("{n} faults in the generated code: {}", faults.join("; ")), code: 4 }),
     }
 }
 
-/// Compiles gz-bsp into a listing, in a folder of its own as its flags differ: names that can be read, and source lines.
-fn build() -> Result<PathBuf, Failure> {
+impl Library {
+    /// How its listings begin, as files are named.
+    fn prefix(&self) -> String {
+        format!("{}-", self.package.replace('-', "_"))
+    }
+}
+
+/// The library that a listing is of, by its name.
+fn named(file: &Path) -> Result<&'static Library, Failure> {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    LIBRARIES.iter().find(|library| name.starts_with(&library.prefix())).ok_or_else(|| {
+        let names: Vec<String> = LIBRARIES.iter().map(Library::prefix).collect();
+        let message = format!("{}: a listing's name begins with {}, which tells whose it is", file.display(), names.join(" or "));
+        Failure { message, code: 1 }
+    })
+}
+
+/// Compiles a library into a listing, in a folder of its own as its flags differ: names that can be read, and source lines.
+fn build(library: &Library) -> Result<PathBuf, Failure> {
     if !cfg!(target_arch = "x86_64") {
         return Err(Failure { message: "lanes reads code for x86-64, which this machine is not".to_owned(), code: 1 });
     }
     let folder = root().join("target/lanes");
     let mut command = cargo();
-    command.args(["rustc", "--quiet", "--release", "--package", "gz-bsp", "--lib", "--target-dir"]).arg(&folder);
+    command.args(["rustc", "--quiet", "--release", "--package", library.package, "--lib", "--target-dir"]).arg(&folder);
     // The code of one library, before the linker's optimisations.
     command.args(["--config", "profile.release.lto=\"off\"", "--", "--emit", "asm"]);
     command.env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", "-C symbol-mangling-version=v0 -C debuginfo=line-tables-only");
-    finish(&mut command, "compiling gz-bsp")?;
-    newest(&folder.join("release/deps"))
+    finish(&mut command, &format!("compiling {}", library.package))?;
+    newest(&folder.join("release/deps"), library)
         .ok_or_else(|| Failure { message: format!("no listing in {}", folder.display()), code: 1 })
 }
 
-/// The newest listing of gz-bsp in a folder.
-fn newest(folder: &Path) -> Option<PathBuf> {
-    let is_ours = |path: &PathBuf| {
+/// The newest listing of a library in a folder.
+fn newest(folder: &Path, library: &Library) -> Option<PathBuf> {
+    let is_its = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        name.starts_with("gz_bsp-") && name.ends_with(".s")
+        name.starts_with(&library.prefix()) && name.ends_with(".s")
     };
-    let files = std::fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path())).filter(is_ours);
+    let files = std::fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path())).filter(is_its);
     files.max_by_key(|path| std::fs::metadata(path).and_then(|data| data.modified()).ok())
 }
 
-/// What is to be said of a listing, and what is wrong with it.
-fn judge(text: &str) -> (String, Vec<String>) {
+/// What is to be said of a listing, and what is wrong with it, where it must have `tasks`.
+fn judge(text: &str, tasks: &[&str]) -> (String, Vec<String>) {
     let (mut report, mut faults) = (String::new(), Vec::new());
-    let is_hot = |path: &str| LEVELS.iter().any(|level| path.contains(level)) && TASKS.iter().any(|task| is_of(path, task));
+    let is_hot = |path: &str| LEVELS.iter().any(|level| path.contains(level)) && tasks.iter().any(|task| is_of(path, task));
     let functions = listing::functions(text, is_hot);
     for level in LEVELS {
-        for task in TASKS {
+        for task in tasks {
             let name = format!("{level} of {task}");
             let is_it = |it: &&Function| it.path.split("::").any(|word| word == level) && is_of(&it.path, task);
             match functions.iter().find(is_it) {
@@ -128,7 +165,7 @@ fn judge(text: &str) -> (String, Vec<String>) {
     (report, faults)
 }
 
-/// Whether a path is that of a task of [`TASKS`].
+/// Whether a path is that of a task.
 fn is_of(path: &str, task: &str) -> bool {
     let mut words = path.split("::");
     task.split(' ').all(|wanted| words.any(|word| word == wanted)) && words.next().is_none()
@@ -196,12 +233,12 @@ mod tests {
     }
 
     fn faults(more: &str) -> Vec<String> {
-        judge(&made_up(more)).1
+        judge(&made_up(more), LIBRARIES[1].tasks).1
     }
 
     #[test]
     fn inlined_code_has_no_fault() {
-        let (report, faults) = judge(&made_up(""));
+        let (report, faults) = judge(&made_up(""), LIBRARIES[1].tasks);
         assert_eq!(faults, Vec::<String>::new());
         assert_eq!(report.lines().filter(|line| line.contains("1 of 256")).count(), 6, "{report}");
         assert!(report.contains("1 calls of memcpy: copies"), "{report}");
@@ -235,10 +272,10 @@ mod tests {
         let listing =
             made_up("").replace("run_avx512INtNtNtC6gz_bsp4cost5batch7AnyTask", "run_avx512INtNtNtC6gz_bsp4cost5batch7OddTask");
         assert_eq!(
-            judge(&listing).1,
+            judge(&listing, LIBRARIES[1].tasks).1,
             ["there is no run_avx512 of AnyTask Stopped", "there is no run_avx512 of AnyTask GoingThrough"]
         );
-        assert_eq!(judge("").1.len(), 6);
+        assert_eq!(judge("", LIBRARIES[1].tasks).1.len(), 6);
     }
 
     #[test]
@@ -246,6 +283,8 @@ mod tests {
         let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(run(&words("--fast")).map_err(|failure| failure.code), Err(2));
         assert_eq!(run(&words("a b")).map_err(|failure| failure.code), Err(2));
+        assert_eq!(run(&words("no/such/gz_bsp-listing.s")).map_err(|failure| failure.code), Err(1));
+        // Whose it is cannot be told.
         assert_eq!(run(&words("no/such/listing.s")).map_err(|failure| failure.code), Err(1));
     }
 }
