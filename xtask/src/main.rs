@@ -10,6 +10,7 @@ mod lanes;
 mod measure;
 mod render;
 mod report;
+mod seeds;
 mod verify;
 
 use std::path::PathBuf;
@@ -29,7 +30,7 @@ struct Failure {
     code: u8,
 }
 
-const TASKS: [Task; 8] = [
+const TASKS: [Task; 9] = [
     Task {
         name: "render",
         takes: "[NAME|FILE|all] [gz options]",
@@ -69,8 +70,14 @@ const TASKS: [Task; 8] = [
     Task {
         name: "lanes",
         takes: "",
-        does: "read the generated code of the walk: no kernel may be called that should be inlined",
+        does: "read the generated code of walk and shading: no kernel may be called that should be inlined",
         run: lanes::run,
+    },
+    Task {
+        name: "seeds",
+        takes: "",
+        does: "write the hard cases that fuzzing starts from (see tests/fuzz/README.md)",
+        run: seeds::run,
     },
     Task { name: "ci", takes: "", does: "format, clippy, docs and tests: what has to pass before a push", run: ci::run },
 ];

@@ -4,6 +4,7 @@
 //! well and panics when it is not.
 
 mod bytes;
+pub mod seeds;
 
 use crate::judge::{SETTINGS, Verdict, buffer, judge, truth_ray, truth_triangle};
 use crate::truth::{Found, Meeting, Truth, plain};
