@@ -3,7 +3,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::slabs::BundleSlabs;
-use super::together::{AnyOf, ClosestOf, Queue};
+use super::together::{AnyOf, BundleQuest, ClosestOf, Queue};
 use super::walk::{Blocked, NearestOf, Stack};
 use super::wide::{BspTree, Child};
 use crate::Visits;
@@ -168,31 +168,8 @@ impl<V: Visits> Task for ClosestTask<'_, V> {
         for (from, hits) in (0..).step_by(BUNDLE).zip(hits.chunks_mut(BUNDLE)) {
             let fit = bundle.gather::<S>(rays, from, hits.len(), &tree.space);
             slabs.gather::<S>(bundle, hits.len().div_ceil(LANES), tree.space.reach);
-            let mut left = fit;
-            while let Some((p, lane)) = first(&left) {
-                let mut company = slabs.company(p, lane, &left);
-                for p in 0..PACKETS {
-                    left[p] &= !company[p];
-                }
-                let way = slabs.way(p, lane);
-                for part in parts(&company) {
-                    if count(&part) < COMPANY || !is_within(&part, &company) {
-                        continue;
-                    }
-                    let mut quest = ClosestOf { tree, bundle, rays, targets: &targets };
-                    if tree.send_together::<S, _>(slabs, way, &part, queue, stack, &mut quest) {
-                        take_out(&part, &mut company);
-                    }
-                }
-                for p in 0..PACKETS {
-                    let mut few = company[p];
-                    while few != 0 {
-                        let lane = few.trailing_zeros() as usize;
-                        few &= few - 1;
-                        tree.closest_alone::<S>(rays, bundle, slabs, p, lane, Child::ROOT, stack, &targets, visits);
-                    }
-                }
-            }
+            let mut quest = ClosestOf { tree, bundle: &mut *bundle, rays, targets: &targets, visits: &mut *visits };
+            tree.send_all::<S, _>(slabs, &fit, queue, stack, &mut quest);
             bundle.hits::<S>(rays, targets.positions(), hits);
             if count(&fit) as usize != hits.len() {
                 tree.far_hits(rays, from, &fit, &targets, hits, visits);
@@ -221,36 +198,13 @@ impl<K: OnHit, V: Visits> Task for AnyTask<'_, K, V> {
         for (from, occluded) in (0..).step_by(BUNDLE).zip(occluded.chunks_mut(BUNDLE)) {
             let fit = bundle.gather::<S>(rays, from, occluded.len(), &tree.space);
             slabs.gather::<S>(bundle, occluded.len().div_ceil(LANES), tree.space.reach);
-            let (mut left, mut blocked) = (fit, [0; PACKETS]);
-            while let Some((p, lane)) = first(&left) {
-                let mut company = slabs.company(p, lane, &left);
-                for p in 0..PACKETS {
-                    left[p] &= !company[p];
-                }
-                let way = slabs.way(p, lane);
-                for part in parts(&company) {
-                    if count(&part) < COMPANY || !is_within(&part, &company) {
-                        continue;
-                    }
-                    let (targets, blocked, on_hit) = (&targets, &mut blocked, &mut on_hit);
-                    let mut quest = AnyOf { tree, bundle, rays, targets, blocked, on_hit };
-                    if tree.send_together::<S, _>(slabs, way, &part, queue, stack, &mut quest) {
-                        take_out(&part, &mut company);
-                    }
-                }
-                for p in 0..PACKETS {
-                    let mut few = company[p];
-                    while few != 0 {
-                        let lane = few.trailing_zeros() as usize;
-                        few &= few - 1;
-                        let (of, on_hit) = (Child::ROOT, &mut on_hit);
-                        let hit = tree.any_alone::<S>(rays, bundle, slabs, p, lane, of, stack, &targets, on_hit, visits);
-                        blocked[p] |= u32::from(hit) << lane;
-                    }
-                }
-            }
+            let mut blocked = [0; PACKETS];
+            let (targets, visits) = (&targets, &mut *visits);
+            let mut quest =
+                AnyOf { tree, bundle: &*bundle, rays, targets, blocked: &mut blocked, on_hit: &mut on_hit, visits: &mut *visits };
+            tree.send_all::<S, _>(slabs, &fit, queue, stack, &mut quest);
             if count(&fit) as usize != occluded.len() {
-                tree.far_answers(rays, from, &fit, &targets, &mut blocked, occluded.len(), &mut on_hit, visits);
+                tree.far_answers(rays, from, &fit, targets, &mut blocked, occluded.len(), &mut on_hit, visits);
             }
             for (p, occluded) in occluded.chunks_mut(LANES).enumerate() {
                 for (lane, occluded) in occluded.iter_mut().enumerate() {
@@ -263,6 +217,40 @@ impl<K: OnHit, V: Visits> Task for AnyTask<'_, K, V> {
 }
 
 impl BspTree<'_> {
+    /// Sends the rays of `fit`, together where they go the same way and alone elsewhere.
+    #[inline(always)]
+    fn send_all<S: Simd, Q: BundleQuest<S>>(
+        &self,
+        slabs: &BundleSlabs,
+        fit: &Rays,
+        queue: &mut Queue,
+        stack: &mut Stack,
+        quest: &mut Q,
+    ) {
+        let mut left = *fit;
+        while let Some((p, lane)) = first(&left) {
+            let mut company = slabs.company(p, lane, &left);
+            take_out(&company, &mut left);
+            let way = slabs.way(p, lane);
+            for part in parts(&company) {
+                if count(&part) < COMPANY || !is_within(&part, &company) {
+                    continue;
+                }
+                if self.send_together::<S, _>(slabs, way, &part, queue, stack, quest) {
+                    take_out(&part, &mut company);
+                }
+            }
+            for p in 0..PACKETS {
+                let mut few = company[p];
+                while few != 0 {
+                    let lane = few.trailing_zeros() as usize;
+                    few &= few - 1;
+                    quest.alone(slabs, p, lane, Child::ROOT, stack);
+                }
+            }
+        }
+    }
+
     /// The hits of valid rays that the f32 kernels cannot take: those not in `fit`.
     #[cold]
     #[inline(never)]

@@ -10,6 +10,7 @@
 use super::slabs::BundleSlabs;
 use super::walk::Stack;
 use super::wide::{BspTree, Child, Target, Way, WideNode};
+use crate::Visits;
 use gz_core::kernel::{Each, LANES, OnHit, PACKETS, RayBundle, Rays, Spans, TriGroup, count, extremes, greatest, least};
 use gz_core::simd::{Lanes, Simd};
 use gz_core::{RayBatch, Targets};
@@ -284,14 +285,16 @@ impl BspTree<'_> {
 }
 
 /// The front-most hits.
-pub(super) struct ClosestOf<'q> {
+pub(super) struct ClosestOf<'q, V> {
     pub(super) tree: &'q BspTree<'q>,
     pub(super) bundle: &'q mut RayBundle,
     pub(super) rays: &'q RayBatch<'q>,
     pub(super) targets: &'q Targets<'q>,
+    /// Hears of the steps of rays by themselves.
+    pub(super) visits: &'q mut V,
 }
 
-impl<S: Simd> BundleQuest<S> for ClosestOf<'_> {
+impl<S: Simd, V: Visits> BundleQuest<S> for ClosestOf<'_, V> {
     const ORDERED: bool = true;
 
     #[inline(always)]
@@ -307,13 +310,14 @@ impl<S: Simd> BundleQuest<S> for ClosestOf<'_> {
 
     #[inline(always)]
     fn alone(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool {
-        self.tree.closest_alone::<S>(self.rays, self.bundle, slabs, p, lane, child, stack, self.targets, &mut ());
+        let Self { tree, bundle, rays, targets, visits } = self;
+        tree.closest_alone::<S>(rays, bundle, slabs, p, lane, child, stack, targets, &mut **visits);
         false
     }
 }
 
 /// Whether there are hits that rays end at.
-pub(super) struct AnyOf<'q, K> {
+pub(super) struct AnyOf<'q, K, V> {
     pub(super) tree: &'q BspTree<'q>,
     pub(super) bundle: &'q RayBundle,
     pub(super) rays: &'q RayBatch<'q>,
@@ -321,9 +325,11 @@ pub(super) struct AnyOf<'q, K> {
     /// Rays that ended.
     pub(super) blocked: &'q mut Rays,
     pub(super) on_hit: &'q mut K,
+    /// Hears of the steps of rays by themselves.
+    pub(super) visits: &'q mut V,
 }
 
-impl<S: Simd, K: OnHit> BundleQuest<S> for AnyOf<'_, K> {
+impl<S: Simd, K: OnHit, V: Visits> BundleQuest<S> for AnyOf<'_, K, V> {
     const ORDERED: bool = false;
 
     #[inline(always)]
@@ -342,9 +348,9 @@ impl<S: Simd, K: OnHit> BundleQuest<S> for AnyOf<'_, K> {
 
     #[inline(always)]
     fn alone(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool {
-        let Self { tree, bundle, rays, targets, on_hit, .. } = self;
-        let hit = tree.any_alone::<S>(rays, bundle, slabs, p, lane, child, stack, targets, &mut **on_hit, &mut ());
-        self.blocked[p] |= u32::from(hit) << lane;
+        let Self { tree, bundle, rays, targets, blocked, on_hit, visits } = self;
+        let hit = tree.any_alone::<S>(rays, bundle, slabs, p, lane, child, stack, targets, &mut **on_hit, &mut **visits);
+        blocked[p] |= u32::from(hit) << lane;
         hit
     }
 }
