@@ -2,7 +2,8 @@
 
 use crate::eight::{Rows, above, arrays, dot, lanes, load, plus, select, set, signs, times, widen};
 use crate::interpolate::{self, LEAST_SQUARE, corner_normals};
-use crate::tree::{Node, Rays};
+use crate::rays::Rays;
+use crate::tree::Node;
 use crate::{Interpolate, Scene, SceneNeeds};
 use glam::DVec3;
 use gz_core::simd::{Doubles, Lanes, Simd, Task, dispatch, nine};

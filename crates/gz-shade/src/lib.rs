@@ -27,6 +27,8 @@ mod media;
 mod needs;
 pub mod optics;
 pub mod phong;
+mod powers;
+mod rays;
 pub mod reflection;
 pub mod refraction;
 mod rules;

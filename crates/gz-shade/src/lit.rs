@@ -4,10 +4,10 @@
 // Lanes and channels are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use crate::eight::{Rows, coord, dot, lanes, load, minus, set, signs, times, unit_range, vector, widen};
+use crate::eight::{Rows, coord, dot, load, minus, set, signs, times, unit_range, vector, widen};
 use crate::hits::EightHits;
 use crate::item::Item;
-use crate::phong::power;
+use crate::powers::Powers;
 use crate::{Arrival, GzLight, LightKind};
 use glam::DVec3;
 use gz_core::GzColor;
@@ -148,56 +148,6 @@ impl<S: Simd> Arrivals<S> {
             (color[0][k], color[1][k], color[2][k]) = (c.x, c.y, c.z);
         }
         Self { to_light: load(&to_light), direction: widen::<S>(&load3(&direction)), color: load3(&color) }
-    }
-}
-
-/// Eight powers of highlights.
-#[derive(Debug, Default)]
-struct Powers {
-    exact: [f32; 8],
-    /// The same where they are whole and have at most 16 bits.
-    whole: [u16; 8],
-    /// The lanes where they are not.
-    others: u32,
-}
-
-impl Powers {
-    fn set(&mut self, k: usize, power: f32) {
-        self.exact[k] = power;
-        self.whole[k] = power as u16;
-        self.others |= u32::from(f32::from(self.whole[k]) != power) << k;
-    }
-
-    /// `base`, in [0, 1], to these powers, as [`power`] has it, in `wanted` lanes.
-    #[inline(always)]
-    fn of<D: EightDoubles>(&self, base: D, wanted: u32) -> D {
-        if wanted & self.others != 0 {
-            return D::load(&self.each(base.array(), wanted));
-        }
-        // By repeated squaring, all lanes in step.
-        let (mut result, mut square, mut bits) = (D::splat(1.0), base, self.whole);
-        loop {
-            let (mut odd, mut rest) = (0, 0);
-            for k in 0..8 {
-                odd |= u32::from(bits[k] & 1) << k;
-                bits[k] >>= 1;
-                rest |= bits[k];
-            }
-            result = result.times(square).select(odd, result);
-            if rest == 0 {
-                return result;
-            }
-            square = square.times(square);
-        }
-    }
-
-    /// The same, lane by lane.
-    #[inline(never)]
-    fn each(&self, mut base: [f64; 8], wanted: u32) -> [f64; 8] {
-        for k in lanes(wanted) {
-            base[k] = power(base[k], self.exact[k]);
-        }
-        base
     }
 }
 

@@ -5,10 +5,11 @@ use crate::crowd::Crowd;
 use crate::flock::Flock;
 use crate::hits::EightHits;
 use crate::media::{Media, MediaStacks};
+use crate::rays::Rays;
 use crate::source::closest_hits;
 use crate::{FrameStats, GlassBlend, MirrorBlend, Scene, SceneNeeds};
 use glam::DVec3;
-use gz_core::{ClassMask, GzColor, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TriId};
+use gz_core::{ClassMask, GzColor, Hit, RayBatch, RayQuery, TriId};
 use std::ops::Range;
 
 /// What kind of ray it is.
@@ -75,33 +76,6 @@ impl Node {
     }
 }
 
-/// The rays of nodes, by their numbers: two lists, which batches are parts of.
-#[derive(Debug, Default)]
-pub(crate) struct Rays {
-    origins: Vec<DVec3>,
-    pub(crate) directions: Vec<GzCoord>,
-    /// Where camera rays begin to count.
-    first_tmin: f32,
-}
-
-impl Rays {
-    pub(crate) fn push(&mut self, origin: DVec3, direction: GzCoord) {
-        self.origins.push(origin);
-        self.directions.push(direction);
-    }
-
-    /// The ray of node `id`.
-    pub(crate) fn ray(&self, id: u32, node: &Node, scene: &Scene) -> GzRay {
-        let tmin = if node.parent == NO_PARENT { self.first_tmin } else { scene.rules.leave.tmin() };
-        GzRay { tmin, ..GzRay::from_f64(self.origins[id as usize], self.directions[id as usize]) }
-    }
-
-    /// Origins and directions of eight rays.
-    pub(crate) fn eight(&self, ids: &[u32; 8]) -> ([[f64; 3]; 8], [[f32; 3]; 8]) {
-        (ids.map(|id| self.origins[id as usize].to_array()), ids.map(|id| self.directions[id as usize].to_array()))
-    }
-}
-
 /// All nodes of a tile or of a part of one, children after their parents, and the room that growing them takes.
 #[derive(Debug, Default)]
 pub(crate) struct Tree {
@@ -124,9 +98,7 @@ impl Tree {
     /// Begins anew with some camera rays and their hits.
     pub(crate) fn plant(&mut self, rays: &RayBatch<'_>, hits: &[Hit], pixels: Range<usize>) {
         self.nodes.clear();
-        self.rays.origins.clear();
-        self.rays.directions.clear();
-        self.rays.first_tmin = rays.tmin.get(0);
+        self.rays.clear(rays.tmin.get(0));
         for (id, pixel) in (0..).zip(pixels) {
             self.nodes.push(Node::root(id, hits[pixel]));
             self.rays.push(rays.origin.get(pixel), rays.direction.get(pixel));
@@ -238,9 +210,7 @@ impl Tree {
         if count == 0 {
             return;
         }
-        let (origins, directions) = (PerRay::Each(&self.rays.origins[first..]), PerRay::Each(&self.rays.directions[first..]));
-        let (tmin, tmax) = (PerRay::One(scene.rules.leave.tmin()), PerRay::One(f32::INFINITY));
-        let rays = RayBatch::new(count, origins, directions, tmin, tmax).leaving(&self.leaves);
+        let rays = self.rays.batch(first, scene.rules.leave).leaving(&self.leaves);
         self.answers.clear();
         self.answers.resize(count, Hit::MISS);
         closest_hits(query, scene.rules.leave, &rays, ClassMask::ALL, &mut self.answers);

@@ -62,7 +62,7 @@ const ALLOWED: [(&str, &str); 34] = [
     ("BspTree::far_answers", "cold: rays beyond the range of f32"),
     ("kernel::exact", "cold: what f64 cannot prove"),
     ("robust", "cold: what f64 cannot prove"),
-    ("lit::Powers::each", "powers that are no whole numbers, lane by lane"),
+    ("powers::Powers::each", "powers that are no whole numbers, lane by lane"),
     ("light::GzLight::arrive", "a light that each lane sees from elsewhere"),
 ];
 
