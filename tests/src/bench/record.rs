@@ -15,7 +15,7 @@ pub struct Record {
 
 impl Record {
     /// `docs/bench/KIND-REVISION.csv`; a revision with changes that are not committed is called dirty. `settings` are lines about this
-    /// bench beside revision, machine, rounds and compiler.
+    /// bench beside revision, the time of its commit (seconds since 1970, day), machine, rounds and compiler.
     ///
     /// # Errors
     ///
@@ -29,6 +29,7 @@ impl Record {
         let revision = revision();
         let mut lines = vec![
             format!("revision: {revision}"),
+            format!("committed: {}", first_line("git", &["show", "-s", "--format=%ct, %cs", "HEAD"])),
             format!("machine: {}", machine(0)),
             format!("rounds: {rounds}"),
             format!("rustc: {}", first_line("rustc", &["--version"])),
@@ -48,6 +49,12 @@ impl Record {
         println!("written to {}", self.file.path().display());
         Ok(())
     }
+}
+
+/// When the revision that a record names was committed, in seconds since 1970. Unlike the time of its file, it is the same in every clone.
+pub fn committed(text: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix("# committed: "))?;
+    line.split(',').next()?.parse().ok()
 }
 
 /// Settings as comments, then a line of column names, then the rows. A cell with a comma is put in quotes.
@@ -98,7 +105,7 @@ mod tests {
         record.write("x", [row![1]]).unwrap();
         let written = std::fs::read_to_string(record.file.path()).unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
-        for line in ["# revision: ", "# machine: ", "# rounds: 3\n", "# rustc: ", "# mesh: none\nx\n1\n"] {
+        for line in ["# revision: ", "# committed: ", "# machine: ", "# rounds: 3\n", "# rustc: ", "# mesh: none\nx\n1\n"] {
             assert!(written.contains(line), "{line} in {written}");
         }
         assert!(record.file.path().file_name().unwrap().to_string_lossy().starts_with("kind-"));

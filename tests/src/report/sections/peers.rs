@@ -1,11 +1,11 @@
 //! Ours beside other ray tracers, where `cargo xtask bench peers --write` has left its results.
 
+use crate::bench::record::committed;
 use crate::cells;
 use crate::report::findings::Numbers;
 use crate::report::section::{Chapter, ChartSpec, Drawn, Measured, Section};
 use crate::report::store::csv_lines;
 use crate::report::table::{Column, Kind, Row, Table};
-use gz_app::error::AppError;
 use std::path::PathBuf;
 
 const COLUMNS: [Column; 5] = [
@@ -33,8 +33,8 @@ pub(super) const SECTION: Section = Section {
     columns: &COLUMNS,
     charts: &CHARTS,
     // Results of another program: whatever rows there are.
-    labels: |_| Ok(rows()?.iter().map(label).collect()),
-    measure: |_| Ok(Measured { rows: rows()?, pictures: Vec::new() }),
+    labels: |_| Ok(rows().iter().map(label).collect()),
+    measure: |_| Ok(Measured { rows: rows(), pictures: Vec::new() }),
     says,
 };
 
@@ -47,23 +47,26 @@ fn label(row: &Row) -> String {
     format!("{}, {}", row.cells[0].text(), row.cells[1].text())
 }
 
-/// The newest file of tracing results.
-fn newest() -> Option<PathBuf> {
+/// The name and text of the newest record of tracing: that of the last revision.
+fn newest() -> Option<(String, String)> {
     let folder = crate::report::root().join("docs/bench");
     let files = std::fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path()));
-    let is_race = |path: &PathBuf| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        name.starts_with("peers-") && !name.starts_with("peers-build-") && name.ends_with(".csv")
+    let race = |path: PathBuf| {
+        let name = path.file_name()?.to_string_lossy().into_owned();
+        let is_race = name.starts_with("peers-") && !name.starts_with("peers-build-") && name.ends_with(".csv");
+        if is_race { Some((name, std::fs::read_to_string(path).ok()?)) } else { None }
     };
-    files.filter(is_race).max_by_key(|path| path.metadata().and_then(|it| it.modified()).ok())
+    files.filter_map(race).max_by(|one, other| age_of(one).cmp(&age_of(other)))
 }
 
-/// A row for each line of the file.
-fn rows() -> Result<Vec<Row>, AppError> {
-    let Some(path) = newest() else { return Ok(Vec::new()) };
-    let text = std::fs::read_to_string(&path).map_err(|error| AppError::Io(format!("{}: {error}", path.display())))?;
-    let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(rows_of(&text, &file))
+/// What records are ordered by, the newest last; the name decides between records of one revision.
+fn age_of((name, text): &(String, String)) -> (Option<u64>, &str) {
+    (committed(text), name)
+}
+
+/// A row for each line of the newest record.
+fn rows() -> Vec<Row> {
+    newest().map(|(file, text)| rows_of(&text, &file)).unwrap_or_default()
 }
 
 /// The rows of a file's text; lines that lack a column are left out.
@@ -103,6 +106,16 @@ fn says(table: &Table) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_newest_record_is_of_the_last_commit_whatever_the_files_say() {
+        let record = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+        let old = record("peers-b.csv", "# revision: b\n# committed: 99, 1970-01-01\nmesh\n");
+        let new = record("peers-a.csv", "# revision: a\n# committed: 100, 1970-01-01\nmesh\n");
+        let without = record("peers-c.csv", "# revision: c\nmesh\n");
+        assert!(age_of(&old) < age_of(&new) && age_of(&without) < age_of(&old));
+        assert!(age_of(&record("peers-a-dirty.csv", &new.1)) < age_of(&new));
+    }
 
     #[test]
     fn lines_of_a_race_become_rows_beside_ours() {
