@@ -2,10 +2,12 @@
 // Packets, axes and lanes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
+use super::abreast::Abreast;
+use super::quest::{AnyOf, BundleQuest, ClosestOf};
 use super::slabs::BundleSlabs;
-use super::together::{AnyOf, BundleQuest, ClosestOf, Queue};
+use super::together::Queue;
 use super::walk::{Blocked, NearestOf, Stack};
-use super::wide::{BspTree, Child};
+use super::wide::BspTree;
 use crate::Visits;
 use gz_core::kernel::{Asked, BUNDLE, GoingThrough, LANES, Nearest, OnHit, PACKETS, RayBundle, Rays, Stopped, count};
 use gz_core::simd::{Simd, Task, dispatch};
@@ -15,7 +17,7 @@ use std::cell::Cell;
 use std::ops::{Deref, DerefMut};
 
 /// Rays that go the same way go together from this number on.
-const COMPANY: u32 = 8;
+const COMPANY: u32 = 16;
 
 /// The first ray of a set.
 #[inline(always)]
@@ -111,6 +113,7 @@ struct Desk {
     slabs: BundleSlabs,
     queue: Queue,
     stack: Stack,
+    abreast: Box<Abreast>,
 }
 
 thread_local! {
@@ -123,7 +126,13 @@ struct Loan(Option<Box<Desk>>);
 impl Desk {
     fn take() -> Loan {
         let new = || {
-            Box::new(Self { bundle: RayBundle::empty(), slabs: BundleSlabs::empty(), queue: Queue::new(), stack: Stack::new() })
+            Box::new(Self {
+                bundle: RayBundle::empty(),
+                slabs: BundleSlabs::empty(),
+                queue: Queue::new(),
+                stack: Stack::new(),
+                abreast: Box::new(Abreast::new()),
+            })
         };
         Loan(Some(DESK.take().unwrap_or_else(new)))
     }
@@ -164,12 +173,12 @@ impl<V: Visits> Task for ClosestTask<'_, V> {
     fn run<S: Simd>(self) {
         let Self { tree, rays, targets, hits, visits } = self;
         let mut desk = Desk::take();
-        let Desk { bundle, slabs, queue, stack } = &mut *desk;
+        let Desk { bundle, slabs, queue, stack, abreast } = &mut *desk;
         for (from, hits) in (0..).step_by(BUNDLE).zip(hits.chunks_mut(BUNDLE)) {
             let fit = bundle.gather::<S>(rays, from, hits.len(), &tree.space);
             slabs.gather::<S>(bundle, hits.len().div_ceil(LANES), tree.space.reach);
-            let mut quest = ClosestOf { tree, bundle: &mut *bundle, rays, targets: &targets, visits: &mut *visits };
-            tree.send_all::<S, _>(slabs, &fit, queue, stack, &mut quest);
+            let quest = ClosestOf { tree, bundle: &mut *bundle, rays, targets: &targets, visits: &mut *visits };
+            tree.send_all::<S, _>(slabs, &fit, queue, stack, abreast, quest);
             bundle.hits::<S>(rays, targets.positions(), hits);
             if count(&fit) as usize != hits.len() {
                 tree.far_hits(rays, from, &fit, &targets, hits, visits);
@@ -194,15 +203,15 @@ impl<K: OnHit, V: Visits> Task for AnyTask<'_, K, V> {
     fn run<S: Simd>(self) {
         let Self { tree, rays, targets, occluded, mut on_hit, visits } = self;
         let mut desk = Desk::take();
-        let Desk { bundle, slabs, queue, stack } = &mut *desk;
+        let Desk { bundle, slabs, queue, stack, abreast } = &mut *desk;
         for (from, occluded) in (0..).step_by(BUNDLE).zip(occluded.chunks_mut(BUNDLE)) {
             let fit = bundle.gather::<S>(rays, from, occluded.len(), &tree.space);
             slabs.gather::<S>(bundle, occluded.len().div_ceil(LANES), tree.space.reach);
             let mut blocked = [0; PACKETS];
             let (targets, visits) = (&targets, &mut *visits);
-            let mut quest =
+            let quest =
                 AnyOf { tree, bundle: &*bundle, rays, targets, blocked: &mut blocked, on_hit: &mut on_hit, visits: &mut *visits };
-            tree.send_all::<S, _>(slabs, &fit, queue, stack, &mut quest);
+            tree.send_all::<S, _>(slabs, &fit, queue, stack, abreast, quest);
             if count(&fit) as usize != occluded.len() {
                 tree.far_answers(rays, from, &fit, targets, &mut blocked, occluded.len(), &mut on_hit, visits);
             }
@@ -219,13 +228,14 @@ impl<K: OnHit, V: Visits> Task for AnyTask<'_, K, V> {
 impl BspTree<'_> {
     /// Sends the rays of `fit`, together where they go the same way and alone elsewhere.
     #[inline(always)]
-    fn send_all<S: Simd, Q: BundleQuest<S>>(
+    fn send_all<S: Simd, Q: BundleQuest>(
         &self,
         slabs: &BundleSlabs,
         fit: &Rays,
         queue: &mut Queue,
         stack: &mut Stack,
-        quest: &mut Q,
+        abreast: &mut Abreast,
+        mut quest: Q,
     ) {
         let mut left = *fit;
         while let Some((p, lane)) = first(&left) {
@@ -236,19 +246,20 @@ impl BspTree<'_> {
                 if count(&part) < COMPANY || !is_within(&part, &company) {
                     continue;
                 }
-                if self.send_together::<S, _>(slabs, way, &part, queue, stack, quest) {
+                if self.send_together::<S, _>(slabs, way, &part, queue, abreast, &mut quest) {
                     take_out(&part, &mut company);
                 }
             }
             for p in 0..PACKETS {
-                let mut few = company[p];
-                while few != 0 {
-                    let lane = few.trailing_zeros() as usize;
-                    few &= few - 1;
-                    quest.alone(slabs, p, lane, Child::ROOT, stack);
+                let mut lonely = company[p];
+                while lonely != 0 {
+                    let lane = lonely.trailing_zeros() as usize;
+                    lonely &= lonely - 1;
+                    abreast.send(quest.bundle(), slabs, p, lane);
                 }
             }
         }
+        self.send_abreast::<S, Q>(slabs, abreast, stack, quest);
     }
 
     /// The hits of valid rays that the f32 kernels cannot take: those not in `fit`.

@@ -4,6 +4,7 @@
 //! sides, or on one whose box then grows around it where that is cheaper. Where to cut and when to stop is decided by expected cost,
 //! boxes are tight around what a cell holds, which prices and cuts off empty space, and up to seven cuts are kept as one node of eight cells.
 
+mod abreast;
 mod batch;
 mod build;
 mod check;
@@ -11,6 +12,7 @@ mod clip;
 mod forest;
 #[cfg(feature = "plain-f32")]
 mod plain_f32;
+mod quest;
 mod slabs;
 mod split;
 mod stats;

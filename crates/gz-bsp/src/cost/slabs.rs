@@ -105,6 +105,7 @@ fn of_ray(rows: &[Each; 3], p: usize, lane: usize) -> [f32; 3] {
 }
 
 /// The same of one ray.
+#[derive(Clone, Copy)]
 pub(super) struct Slabs {
     way: Way,
     inverse: [f32; 3],
@@ -114,6 +115,8 @@ pub(super) struct Slabs {
 }
 
 impl Slabs {
+    pub(super) const NONE: Self = Self { way: Way::UP, inverse: [0.0; 3], enter: [0.0; 3], leave: [0.0; 3], tmin: 0.0 };
+
     /// Entries of all cells, and a bit for each that is crossed before `limit`.
     #[inline(always)]
     pub(super) fn cross<L: Lanes<8>>(&self, node: &WideNode, limit: f32) -> (L, u32) {

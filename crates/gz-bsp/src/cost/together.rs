@@ -7,28 +7,12 @@
 // Packets, axes and lanes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
+use super::abreast::Abreast;
+use super::quest::BundleQuest;
 use super::slabs::BundleSlabs;
-use super::walk::Stack;
 use super::wide::{BspTree, Child, Target, Way, WideNode};
-use crate::Visits;
-use gz_core::kernel::{Each, LANES, OnHit, PACKETS, RayBundle, Rays, Spans, TriGroup, count, extremes, greatest, least};
+use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, least};
 use gz_core::simd::{Lanes, Simd};
-use gz_core::{RayBatch, Targets};
-
-/// What is asked of a bundle's rays.
-pub(super) trait BundleQuest<S: Simd> {
-    /// Whether nearer cells are to be visited first.
-    const ORDERED: bool;
-
-    /// Tests a group for the rays of `active`; returns those that need no more.
-    fn test(&mut self, group: &TriGroup, active: &Rays, spans: &Spans) -> Rays;
-
-    /// The rays; where each ends is lowered as hits are found.
-    fn bundle(&self) -> &RayBundle;
-
-    /// Sends one ray by itself through what hangs under `child`; returns whether it needs no more.
-    fn alone(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool;
-}
 
 /// A cell still to be visited, by which rays, and where each enters it.
 #[repr(C, align(64))]
@@ -67,14 +51,14 @@ impl Queue {
     }
 }
 
-/// Fewer rays than this go on alone.
-const FEW: u32 = 4;
+/// Fewer rays than this go on by themselves, when all others are done.
+const FEW: u32 = 5;
 /// Rays of several packets go together when at the root they cross at least this share, in percent, of the cells that their interval crosses.
 /// Those of one packet always do: their boxes cost one step of lanes each.
-const TOGETHER: u32 = 18;
+const TOGETHER: u32 = 6;
 
 /// ... and when samples of them cross at least this share of the cells that any of the samples crosses.
-const ALIKE: u32 = 75;
+const ALIKE: u32 = 40;
 
 /// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
 struct Beam {
@@ -139,13 +123,13 @@ impl BspTree<'_> {
     /// Sends the rays of `company`, which go the same way along each axis as `way` says; gives up, before anything is tested, when they
     /// part at the root.
     #[inline(always)]
-    pub(super) fn send_together<S: Simd, Q: BundleQuest<S>>(
+    pub(super) fn send_together<S: Simd, Q: BundleQuest>(
         &self,
         slabs: &BundleSlabs,
         way: Way,
         company: &Rays,
         queue: &mut Queue,
-        stack: &mut Stack,
+        abreast: &mut Abreast,
         quest: &mut Q,
     ) -> bool {
         if !self.seem_together::<S>(slabs, company, quest.bundle()) {
@@ -221,20 +205,14 @@ impl BspTree<'_> {
                         if count(&active) >= FEW {
                             break index;
                         }
-                        for p in 0..PACKETS {
-                            let mut few = active[p];
-                            while few != 0 {
-                                let lane = few.trailing_zeros() as usize;
-                                few &= few - 1;
-                                if quest.alone(slabs, p, lane, child, stack) {
-                                    live[p] &= !(1 << lane);
-                                }
-                            }
+                        active = leave_few(&queue.cells[queue.len], &active, slabs, abreast, quest);
+                        if active != [0; PACKETS] {
+                            break index;
                         }
                     }
                     Target::Groups { first, count } => {
                         for group in &self.groups[first..first + count] {
-                            let over = quest.test(group, &active, &spans);
+                            let over = quest.test::<S>(group, &active, &spans);
                             if !Q::ORDERED {
                                 for p in 0..PACKETS {
                                     live[p] &= !over[p];
@@ -284,75 +262,22 @@ impl BspTree<'_> {
     }
 }
 
-/// The front-most hits.
-pub(super) struct ClosestOf<'q, V> {
-    pub(super) tree: &'q BspTree<'q>,
-    pub(super) bundle: &'q mut RayBundle,
-    pub(super) rays: &'q RayBatch<'q>,
-    pub(super) targets: &'q Targets<'q>,
-    /// Hears of the steps of rays by themselves.
-    pub(super) visits: &'q mut V,
-}
-
-impl<S: Simd, V: Visits> BundleQuest<S> for ClosestOf<'_, V> {
-    const ORDERED: bool = true;
-
-    #[inline(always)]
-    fn test(&mut self, group: &TriGroup, active: &Rays, spans: &Spans) -> Rays {
-        self.bundle.closest::<S>(self.rays, group, active, spans, self.targets);
-        [0; PACKETS]
-    }
-
-    #[inline(always)]
-    fn bundle(&self) -> &RayBundle {
-        self.bundle
-    }
-
-    #[inline(always)]
-    fn alone(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool {
-        let Self { tree, bundle, rays, targets, visits } = self;
-        tree.closest_alone::<S>(rays, bundle, slabs, p, lane, child, stack, targets, &mut **visits);
-        false
-    }
-}
-
-/// Whether there are hits that rays end at.
-pub(super) struct AnyOf<'q, K, V> {
-    pub(super) tree: &'q BspTree<'q>,
-    pub(super) bundle: &'q RayBundle,
-    pub(super) rays: &'q RayBatch<'q>,
-    pub(super) targets: &'q Targets<'q>,
-    /// Rays that ended.
-    pub(super) blocked: &'q mut Rays,
-    pub(super) on_hit: &'q mut K,
-    /// Hears of the steps of rays by themselves.
-    pub(super) visits: &'q mut V,
-}
-
-impl<S: Simd, K: OnHit, V: Visits> BundleQuest<S> for AnyOf<'_, K, V> {
-    const ORDERED: bool = false;
-
-    #[inline(always)]
-    fn test(&mut self, group: &TriGroup, active: &Rays, spans: &Spans) -> Rays {
-        let hit = self.bundle.any::<S>(self.rays, group, active, spans, self.targets, self.on_hit);
-        for p in 0..PACKETS {
-            self.blocked[p] |= hit[p];
+/// Leaves the rays of `active` that wait at a cell to themselves; gives those for which there is no room.
+#[inline(always)]
+fn leave_few<Q: BundleQuest>(waiting: &Waiting, active: &Rays, slabs: &BundleSlabs, abreast: &mut Abreast, quest: &Q) -> Rays {
+    let (bundle, mut left) = (quest.bundle(), *active);
+    for p in 0..PACKETS {
+        let mut few = active[p];
+        while few != 0 {
+            let lane = few.trailing_zeros() as usize;
+            few &= few - 1;
+            let entry = if Q::ORDERED { waiting.entries[p][lane] } else { bundle.tmin[p][lane] };
+            if abreast.leave(bundle, slabs, [p, lane], waiting.child, entry) {
+                left[p] &= !(1 << lane);
+            }
         }
-        hit
     }
-
-    #[inline(always)]
-    fn bundle(&self) -> &RayBundle {
-        self.bundle
-    }
-
-    #[inline(always)]
-    fn alone(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool {
-        let Self { tree, bundle, rays, targets, blocked, on_hit, visits } = self;
-        let hit = tree.any_alone::<S>(rays, bundle, slabs, p, lane, child, stack, targets, &mut **on_hit, &mut **visits);
-        blocked[p] |= u32::from(hit) << lane;
-        hit
-    }
+    left
 }
 
 /// Slots whose bit is set, by falling entry.

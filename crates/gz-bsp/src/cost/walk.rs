@@ -8,7 +8,7 @@ use super::build::MOST_LEVELS;
 use super::slabs::{BundleSlabs, Slabs};
 use super::wide::{BspTree, Child, Target};
 use crate::Visits;
-use gz_core::kernel::{Asked, Candidates, FilterRay, Nearest, OnHit, RayBundle, is_hit};
+use gz_core::kernel::{Asked, Candidates, FilterRay, Nearest, OnHit, RayBundle, TriGroup, is_hit};
 use gz_core::simd::{Lanes, Simd};
 use gz_core::{GzRay, NO_TRI, RayBatch, Targets, TriId};
 
@@ -75,6 +75,23 @@ pub(super) trait Quest {
 
     /// The same for a triangle of which nothing is known.
     fn test(&mut self, tri: TriId) -> Option<f32>;
+
+    /// The same for all that is possible in a group, after which nothing matters beyond `limit`.
+    #[inline(always)]
+    fn take_all(&mut self, found: &Candidates, group: &TriGroup, mut limit: f32, visits: &mut impl Visits) -> Option<f32> {
+        let mut possible = found.possible;
+        while possible != 0 {
+            let lane = possible.trailing_zeros() as usize & 7;
+            possible &= possible - 1;
+            let tri = group.id(lane);
+            if tri == NO_TRI {
+                break;
+            }
+            visits.test(tri);
+            limit = self.take(found, lane, tri)?;
+        }
+        Some(limit)
+    }
 }
 
 /// The front-most hit of a ray.
@@ -253,19 +270,9 @@ impl BspTree<'_> {
                     for group in &self.groups[first..first + count] {
                         visits.group();
                         let Some(found) = group.candidates::<S>(filter) else { continue };
-                        let mut possible = found.possible;
-                        while possible != 0 {
-                            let lane = possible.trailing_zeros() as usize & 7;
-                            possible &= possible - 1;
-                            let tri = group.id(lane);
-                            if tri == NO_TRI {
-                                break;
-                            }
-                            visits.test(tri);
-                            match quest.take(&found, lane, tri) {
-                                Some(new) => limit = new,
-                                None => return,
-                            }
+                        match quest.take_all(&found, group, limit, visits) {
+                            Some(new) => limit = new,
+                            None => return,
                         }
                     }
                 }

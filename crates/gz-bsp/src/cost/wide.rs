@@ -39,6 +39,8 @@ enum Start {
 pub(super) struct Way(&'static [[Start; 2]; 3]);
 
 impl Way {
+    pub(super) const UP: Self = Self(&WAYS[0]);
+
     /// By whether rays go down along each axis.
     #[inline(always)]
     pub(super) fn new(down: [bool; 3]) -> Self {
@@ -101,6 +103,40 @@ impl Child {
         }
     }
 
+    /// The number that stands for it.
+    #[inline(always)]
+    pub(super) fn number(self) -> u32 {
+        self.0
+    }
+
+    #[inline(always)]
+    pub(super) fn of_number(number: u32) -> Self {
+        Self(number)
+    }
+
+    #[inline(always)]
+    pub(super) fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+
+    #[inline(always)]
+    pub(super) fn is_node(self) -> bool {
+        self.0 as i32 > 0
+    }
+
+    /// The number of a node.
+    #[inline(always)]
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// A leaf's first group, whether there are more, and the leaf that they are. All of this without a branch.
+    #[inline(always)]
+    pub(super) fn split(self) -> (usize, bool, Self) {
+        let rest = Self(self.0.wrapping_sub(1 << Self::COUNT_SHIFT).wrapping_add(1));
+        ((self.0 & Self::FIRST_MASK) as usize, self.0 >> Self::COUNT_SHIFT & 7 != 0, rest)
+    }
+
     pub(crate) fn is_none(self) -> bool {
         self == Self::NONE
     }
@@ -125,6 +161,13 @@ impl WideNode {
             self.planes[2 * axis + 1][slot] = bounds.max[axis];
         }
         self.children[slot] = child;
+    }
+
+    /// The numbers that stand for the cells.
+    #[inline(always)]
+    pub(super) fn numbers(&self) -> [u32; WIDTH] {
+        let c = &self.children;
+        [c[0].0, c[1].0, c[2].0, c[3].0, c[4].0, c[5].0, c[6].0, c[7].0]
     }
 
     /// The planes of all cells where rays that go `way` enter and leave them along an axis.

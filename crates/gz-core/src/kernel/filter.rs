@@ -133,7 +133,7 @@ impl<const N: usize, L: Lanes<N>> Judged<N, L> {
 }
 
 /// A ray as the f32 kernels see it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct FilterRay {
     pub(super) origin: [f32; 3],
     pub(super) direction: [f32; 3],

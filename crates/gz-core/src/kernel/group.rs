@@ -77,6 +77,16 @@ impl TriGroup {
             possible => Some(lines.candidates(self, ray, possible)),
         }
     }
+
+    /// The same without a branch, also where there are none.
+    #[inline(always)]
+    pub fn all_candidates<S: Simd>(&self, ray: &FilterRay) -> Candidates {
+        let lines = Lines::<S::Eight>::of(self, ray);
+        if !S::CERTIFIED {
+            return lines.plain(self).unwrap_or(Candidates::NONE);
+        }
+        lines.candidates(self, ray, lines.judged.possible())
+    }
 }
 
 /// What f32 knows of a ray and the triangles of a group that it may hit.
@@ -90,6 +100,11 @@ pub struct Candidates {
     pub lo: [f32; 8],
     /// At least t.
     pub hi: [f32; 8],
+}
+
+impl Candidates {
+    /// No triangle is possible.
+    pub const NONE: Self = Self { possible: 0, sure: 0, lo: [0.0; 8], hi: [0.0; 8] };
 }
 
 /// One ray against eight triangles, by the scheme of Moller and Trumbore: P = d x e2 gives V = A.P and D = -e1.P, Q = A x e1 gives W = d.Q

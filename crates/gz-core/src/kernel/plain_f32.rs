@@ -34,6 +34,11 @@ impl<S: Simd> Simd for PlainF32<S> {
     type Sixteen = S::Sixteen;
 
     #[inline(always)]
+    fn apart<T: Task>(task: T) -> T::Output {
+        S::apart(InPlainF32(task))
+    }
+
+    #[inline(always)]
     fn join(low: S::Eight, high: S::Eight) -> S::Sixteen {
         S::join(low, high)
     }

@@ -57,6 +57,16 @@ pub trait Lanes<const N: usize>: Copy {
     /// Sets `ids` to `id` where the bit is set.
     fn set_some(id: u32, bits: u32, ids: &mut [u32; N]);
 
+    /// The lanes whose bit is set, in their order, each with a number in the lower half; what follows them means nothing.
+    #[inline(always)]
+    fn front(self, numbers: &[u32; N], bits: u32, front: &mut [i64; N]) {
+        let (lanes, mut count) = (self.array(), 0);
+        for (lane, (x, number)) in lanes.iter().zip(numbers).enumerate() {
+            front[count % N] = i64::from(x.to_bits()) << 32 | i64::from(*number);
+            count += (bits >> lane & 1) as usize;
+        }
+    }
+
     /// The coordinates of points: lane `i` of result `k` is `points[i][k]`.
     #[inline(always)]
     fn unzip3(points: &[[f32; 3]; N]) -> [Self; 3] {
@@ -109,6 +119,9 @@ pub trait Simd {
     type Eight: Lanes<8>;
     /// Sixteen numbers.
     type Sixteen: Lanes<16>;
+
+    /// Runs a task as a function of its own, for the same instructions: what is compiled into its caller shares the caller's registers.
+    fn apart<T: Task>(task: T) -> T::Output;
 
     /// Sixteen numbers from the lower and the upper eight.
     fn join(low: Self::Eight, high: Self::Eight) -> Self::Sixteen;
@@ -229,6 +242,37 @@ mod tests {
                 3..6 => f64s(&sixteen[k - 3].array()),
                 _ => doubles[k - 6].array().to_vec(),
             })
+        }
+    }
+
+    /// For each set of eight lanes, what is brought to the front.
+    struct Fronts;
+
+    impl Task for Fronts {
+        type Output = Vec<Vec<i64>>;
+
+        #[inline(always)]
+        fn run<S: Simd>(self) -> Self::Output {
+            let lanes = <S::Eight>::load(&[0.0, -1.0, 2.0, -0.0, f32::INFINITY, 5.0, f32::NEG_INFINITY, 7.0]);
+            let mut sets = Vec::new();
+            for bits in 0..256u32 {
+                let mut front = [0; 8];
+                lanes.front(&[1, 2, 3, 4, 5, u32::MAX, 7, 8], bits, &mut front);
+                sets.push(front[..bits.count_ones() as usize].to_vec());
+            }
+            sets
+        }
+    }
+
+    #[test]
+    fn every_level_brings_lanes_to_the_front() {
+        let expected = dispatch(SimdLevel::Portable, Fronts);
+        assert_eq!(expected[0], []);
+        let number = |x: f32, low: u32| (u64::from(x.to_bits()) << 32 | u64::from(low)).cast_signed();
+        assert_eq!(expected[0b1010_1010], [number(-1.0, 2), number(-0.0, 4), number(5.0, u32::MAX), number(7.0, 8)]);
+        assert_eq!(expected[255].len(), 8);
+        for &level in SimdLevel::available() {
+            assert_eq!(dispatch(level, Fronts), expected, "{level:?}");
         }
     }
 

@@ -1,7 +1,7 @@
 //! Lanes that every target has.
 
 use super::doubles::{Doubles, EightDoubles};
-use super::lanes::{Lanes, Simd};
+use super::lanes::{Lanes, Simd, Task};
 
 /// The instructions of the build target.
 pub(super) struct PortableSimd;
@@ -10,6 +10,11 @@ impl Simd for PortableSimd {
     type Doubles = PortableDoubles;
     type Eight = Portable;
     type Sixteen = Pair<Portable>;
+
+    #[inline(never)]
+    fn apart<T: Task>(task: T) -> T::Output {
+        task.run::<Self>()
+    }
 
     #[inline(always)]
     fn join(low: Portable, high: Portable) -> Pair<Portable> {

@@ -13,6 +13,25 @@ fn spread(bits: u32) -> __m256i {
     call!(_mm256_cmpeq_epi32(bits, each))
 }
 
+/// For each set of lanes their numbers, in the order in which pairs of them come to lie one after the other when halves of registers are
+/// zipped.
+static FRONT: [[u8; 8]; 256] = {
+    let mut front = [[0; 8]; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 8 {
+            if bits >> lane & 1 != 0 {
+                front[bits][[0, 1, 4, 5, 2, 3, 6, 7][count]] = lane as u8;
+                count += 1;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    front
+};
+
 impl Lanes<8> for Avx2 {
     #[inline(always)]
     fn splat(x: f32) -> Self {
@@ -135,6 +154,19 @@ impl Lanes<8> for Avx2 {
         let lanes = call!(_mm256_cmpeq_epi32(ids, id));
         let lanes = call!(_mm256_castsi256_ps(lanes));
         call!(_mm256_movemask_ps(lanes)) as u32
+    }
+    #[inline(always)]
+    fn front(self, numbers: &[u32; 8], bits: u32, to: &mut [i64; 8]) {
+        let lanes = u64::from_le_bytes(FRONT[bits as usize & 0xff]);
+        let lanes = call!(_mm256_cvtepu8_epi32(_mm_cvtsi64_si128(lanes as i64)));
+        // SAFETY: reads the 32 bytes of `numbers` and writes the 64 of `to`, unaligned; features as above.
+        unsafe {
+            let numbers = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(numbers.as_ptr().cast()), lanes);
+            let x = _mm256_castps_si256(_mm256_permutevar8x32_ps(self.0, lanes));
+            let to = to.as_mut_ptr().cast::<__m256i>();
+            _mm256_storeu_si256(to, _mm256_unpacklo_epi32(numbers, x));
+            _mm256_storeu_si256(to.add(1), _mm256_unpackhi_epi32(numbers, x));
+        }
     }
     #[inline(always)]
     fn set_some(id: u32, bits: u32, ids: &mut [u32; 8]) {

@@ -23,11 +23,13 @@ mod doubles;
 
 use doubles::{Avx2Doubles, Avx512Doubles};
 
+#[inline(never)]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn run_avx2<T: Task>(task: T) -> T::Output {
     task.run::<Avx2Simd>()
 }
 
+#[inline(never)]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw")]
 pub(super) fn run_avx512<T: Task>(task: T) -> T::Output {
     task.run::<Avx512Simd>()
@@ -40,6 +42,11 @@ impl Simd for Avx2Simd {
     type Doubles = Avx2Doubles;
     type Eight = Avx2;
     type Sixteen = Pair<Avx2>;
+
+    #[inline(always)]
+    fn apart<T: Task>(task: T) -> T::Output {
+        call!(run_avx2(task))
+    }
 
     #[inline(always)]
     fn join(low: Avx2, high: Avx2) -> Pair<Avx2> {
@@ -78,6 +85,11 @@ impl Simd for Avx512Simd {
     type Doubles = Avx512Doubles;
     type Eight = Avx2;
     type Sixteen = Avx512;
+
+    #[inline(always)]
+    fn apart<T: Task>(task: T) -> T::Output {
+        call!(run_avx512(task))
+    }
 
     #[inline(always)]
     fn join(low: Avx2, high: Avx2) -> Avx512 {
