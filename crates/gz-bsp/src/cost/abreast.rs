@@ -22,11 +22,13 @@ const DEPTH: usize = if cfg!(test) { 16 } else { 64 };
 /// The last of a stack in which there is nothing.
 const EMPTY: u32 = 2;
 
-/// Cells still to be visited, each with where the ray enters it in the upper half. Below are three that are none, behind all others: with
-/// them a walk ends.
+/// Cells still to be visited, each with where the ray enters it in the upper half. Below are three of [`LAST`]: with them a walk ends.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Stack([i64; DEPTH]);
+
+/// No cell, behind all that there can be, also at infinity: what comes after it would stay on the stack for another tree.
+const LAST: i64 = (i32::MAX as i64) << 32 | Child::NONE.number() as i64;
 
 /// A ray on its way.
 #[derive(Clone, Copy)]
@@ -108,7 +110,7 @@ impl Abreast {
             roots: 0,
             started: 0,
             rays: Box::new([ray; BUNDLE]),
-            stacks: Box::new([Stack([waiting(Child::NONE, f32::INFINITY); DEPTH]); BUNDLE]),
+            stacks: Box::new([Stack([LAST; DEPTH]); BUNDLE]),
             tested: [0; BUNDLE],
             found: Box::new([Candidates::NONE; BUNDLE]),
         }
@@ -286,7 +288,7 @@ mod tests {
     fn cells_come_nearly_in_order_and_then_none() {
         let mut stack = Abreast::new().stacks[0];
         let mut last = EMPTY;
-        let entries = [8.0, 2.0, -0.0, f32::MAX, 5.0, -3.0];
+        let entries = [8.0, 2.0, -0.0, f32::INFINITY, 5.0, -3.0];
         for (k, entry) in entries.into_iter().enumerate() {
             last += 1;
             stack.0[last as usize] = waiting(Child::of_number(k as u32 + 1), entry);
@@ -299,7 +301,7 @@ mod tests {
         }
         assert_eq!(popped, [6, 3, 2, 5, 1, 4]);
         assert!(stack.pop(&mut last).0.is_none());
-        assert!(stack.0[..3].iter().all(|&cell| cell == waiting(Child::NONE, f32::INFINITY)), "the next ray finds none below");
+        assert!(stack.0[..3].iter().all(|&cell| cell == LAST), "the next ray finds none below");
     }
 
     #[test]

@@ -105,7 +105,7 @@ impl Child {
 
     /// The number that stands for it.
     #[inline(always)]
-    pub(super) fn number(self) -> u32 {
+    pub(super) const fn number(self) -> u32 {
         self.0
     }
 
