@@ -6,7 +6,8 @@ use crate::report::findings::Numbers;
 use crate::report::section::{Chapter, ChartSpec, Drawn, Measured, Section};
 use crate::report::store::csv_lines;
 use crate::report::table::{Column, Kind, Row, Table};
-use std::path::PathBuf;
+use gz_app::error::AppError;
+use std::path::{Path, PathBuf};
 
 const COLUMNS: [Column; 5] = [
     Column::new("set", "mesh, rays", "", Kind::Label),
@@ -33,14 +34,14 @@ pub(super) const SECTION: Section = Section {
     columns: &COLUMNS,
     charts: &CHARTS,
     // Results of another program: whatever rows there are.
-    labels: |_| Ok(rows().iter().map(label).collect()),
-    measure: |_| Ok(Measured { rows: rows(), pictures: Vec::new() }),
+    labels: |_| Ok(rows()?.iter().map(label).collect()),
+    measure: |_| Ok(Measured { rows: rows()?, pictures: Vec::new() }),
     says,
 };
 
 /// Whether there is anything to show.
 pub(in crate::report) fn has_results() -> bool {
-    newest().is_some()
+    !races().is_empty()
 }
 
 fn label(row: &Row) -> String {
@@ -48,15 +49,30 @@ fn label(row: &Row) -> String {
 }
 
 /// The name and text of the newest record of tracing: that of the last revision.
-fn newest() -> Option<(String, String)> {
-    let folder = crate::report::root().join("docs/bench");
-    let files = std::fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path()));
-    let race = |path: PathBuf| {
-        let name = path.file_name()?.to_string_lossy().into_owned();
-        let is_race = name.starts_with("peers-") && !name.starts_with("peers-build-") && name.ends_with(".csv");
-        if is_race { Some((name, std::fs::read_to_string(path).ok()?)) } else { None }
+fn newest() -> Result<Option<(String, String)>, AppError> {
+    let mut newest = None;
+    for path in races() {
+        let text = std::fs::read_to_string(&path).map_err(|error| AppError::Io(format!("{}: {error}", path.display())))?;
+        let record = (name_of(&path), text);
+        if newest.as_ref().is_none_or(|newest| age_of(newest) < age_of(&record)) {
+            newest = Some(record);
+        }
+    }
+    Ok(newest)
+}
+
+/// The files of tracing results.
+fn races() -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(crate::report::root().join("docs/bench")) else { return Vec::new() };
+    let is_race = |path: &PathBuf| {
+        let name = name_of(path);
+        name.starts_with("peers-") && !name.starts_with("peers-build-") && name.ends_with(".csv")
     };
-    files.filter_map(race).max_by(|one, other| age_of(one).cmp(&age_of(other)))
+    entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_race).collect()
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// What records are ordered by, the newest last; the name decides between records of one revision.
@@ -65,8 +81,8 @@ fn age_of((name, text): &(String, String)) -> (Option<u64>, &str) {
 }
 
 /// A row for each line of the newest record.
-fn rows() -> Vec<Row> {
-    newest().map(|(file, text)| rows_of(&text, &file)).unwrap_or_default()
+fn rows() -> Result<Vec<Row>, AppError> {
+    Ok(newest()?.map(|(file, text)| rows_of(&text, &file)).unwrap_or_default())
 }
 
 /// The rows of a file's text; lines that lack a column are left out.
