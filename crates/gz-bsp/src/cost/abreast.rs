@@ -12,7 +12,7 @@ use super::quest::BundleQuest;
 use super::slabs::{BundleSlabs, Slabs};
 use super::walk;
 use super::wide::{BspTree, Child, WIDTH};
-use gz_core::kernel::{BUNDLE, Candidates, FilterRay, LANES, RayBundle};
+use gz_core::kernel::{BUNDLE, Candidates, FilterRay, LANES, RayBundle, Rays};
 use gz_core::simd::{Lanes, Simd, Task};
 
 /// Fewer rays than this go alone at once.
@@ -60,6 +60,16 @@ pub(super) struct Abreast {
 #[inline(always)]
 fn waiting(child: Child, entry: f32) -> i64 {
     i64::from(entry.to_bits()) << 32 | i64::from(child.number())
+}
+
+/// A set of rays as one number.
+#[inline(always)]
+fn whole(rays: &Rays) -> u64 {
+    let mut whole = 0;
+    for (p, packet) in rays.iter().enumerate() {
+        whole |= u64::from(*packet) << (p * LANES);
+    }
+    whole
 }
 
 /// The number of the first ray of a set, which is taken out.
@@ -116,14 +126,17 @@ impl Abreast {
         }
     }
 
-    /// Has a ray go alone from the root.
+    /// Has rays go by themselves from the root.
     // Out of line, like `leave`: the loops that call them have no register to spare.
     #[cold]
     #[inline(never)]
-    pub(super) fn send(&mut self, bundle: &RayBundle, slabs: &BundleSlabs, p: usize, lane: usize) {
-        let k = (p * LANES + lane) % BUNDLE;
-        self.roots |= 1 << k;
-        self.rays[k].start(bundle, slabs, p, lane);
+    pub(super) fn send(&mut self, bundle: &RayBundle, slabs: &BundleSlabs, lonely: &Rays) {
+        let mut rays = whole(lonely);
+        self.roots |= rays;
+        while rays != 0 {
+            let k = take_first(&mut rays);
+            self.rays[k].start(bundle, slabs, k / LANES, k % LANES);
+        }
     }
 
     /// Has a ray visit a cell, which it enters at `entry`, by itself later; tells whether there was room.
@@ -244,11 +257,7 @@ impl<Q: BundleQuest> Task for Alone<'_, Q> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let Self { tree, slabs, abreast, stack, mut quest } = self;
-        let over = quest.over();
-        for (p, over) in over.iter().enumerate() {
-            abreast.started &= !(u64::from(*over) << (p * LANES));
-        }
-        let (roots, started) = (abreast.roots, abreast.started);
+        let (roots, started) = (abreast.roots, abreast.started & !whole(&quest.over()));
         (abreast.roots, abreast.started) = (0, 0);
         let mut all = roots | started;
         while all != 0 {

@@ -250,14 +250,7 @@ impl BspTree<'_> {
                     take_out(&part, &mut company);
                 }
             }
-            for p in 0..PACKETS {
-                let mut lonely = company[p];
-                while lonely != 0 {
-                    let lane = lonely.trailing_zeros() as usize;
-                    lonely &= lonely - 1;
-                    abreast.send(quest.bundle(), slabs, p, lane);
-                }
-            }
+            abreast.send(quest.bundle(), slabs, &company);
         }
         self.send_abreast::<S, Q>(slabs, abreast, stack, quest);
     }

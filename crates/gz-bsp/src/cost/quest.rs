@@ -6,7 +6,7 @@ use super::slabs::BundleSlabs;
 use super::walk::{Blocked, NearestOf, Quest, Stack};
 use super::wide::{BspTree, Child};
 use crate::Visits;
-use gz_core::kernel::{Asked, Candidates, OnHit, PACKETS, RayBundle, Rays, Spans, TriGroup};
+use gz_core::kernel::{Candidates, OnHit, PACKETS, RayBundle, Rays, Spans, TriGroup};
 use gz_core::simd::Simd;
 use gz_core::{RayBatch, Targets};
 
@@ -62,17 +62,17 @@ impl<V: Visits> BundleQuest for ClosestOf<'_, V> {
 
     #[inline(always)]
     fn alone<S: Simd>(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool {
-        let Self { tree, bundle, rays, targets, visits } = self;
-        tree.closest_alone::<S>(rays, bundle, slabs, p, lane, child, stack, targets, &mut **visits);
+        let mut quest = NearestOf::of(self.bundle, self.rays, self.targets, p, lane);
+        let (own, filter) = (slabs.alone(p, lane, quest.tmin), self.bundle.filter_ray(p, lane));
+        self.tree.send_alone::<S>(&own, &filter, child, stack, &mut quest, &mut *self.visits);
+        self.bundle.set_nearest(p, lane, quest.best);
         false
     }
 
     #[inline(always)]
     fn take(&mut self, found: &Candidates, group: &TriGroup, p: usize, lane: usize) -> Option<f32> {
-        let ray = Asked::new(self.rays, self.bundle.place(p, lane));
-        let best = self.bundle.nearest(p, lane);
-        let mut quest = NearestOf { ray, tmin: self.bundle.tmin[p][lane], targets: self.targets, best };
-        let limit = quest.take_all(found, group, best.limit(), &mut *self.visits);
+        let mut quest = NearestOf::of(self.bundle, self.rays, self.targets, p, lane);
+        let limit = quest.take_all(found, group, quest.start(), &mut *self.visits);
         self.bundle.set_nearest(p, lane, quest.best);
         limit
     }
@@ -115,26 +115,17 @@ impl<K: OnHit, V: Visits> BundleQuest for AnyOf<'_, K, V> {
 
     #[inline(always)]
     fn alone<S: Simd>(&mut self, slabs: &BundleSlabs, p: usize, lane: usize, child: Child, stack: &mut Stack) -> bool {
-        let Self { tree, bundle, rays, targets, blocked, on_hit, visits } = self;
-        let hit = tree.any_alone::<S>(rays, bundle, slabs, p, lane, child, stack, targets, &mut **on_hit, &mut **visits);
-        blocked[p] |= u32::from(hit) << lane;
-        hit
+        let mut quest = Blocked::of(self.bundle, self.rays, self.targets, &mut *self.on_hit, p, lane);
+        let (own, filter) = (slabs.alone(p, lane, quest.ends[0]), self.bundle.filter_ray(p, lane));
+        self.tree.send_alone::<S>(&own, &filter, child, stack, &mut quest, &mut *self.visits);
+        self.blocked[p] |= u32::from(quest.found) << lane;
+        quest.found
     }
 
     #[inline(always)]
     fn take(&mut self, found: &Candidates, group: &TriGroup, p: usize, lane: usize) -> Option<f32> {
-        let place = self.bundle.place(p, lane);
-        let ends = [self.bundle.tmin[p][lane], self.bundle.limit[p][lane]];
-        let mut quest = Blocked {
-            ray: Asked::new(self.rays, place),
-            ends,
-            targets: self.targets,
-            leaves: self.rays.left_by(place),
-            of: (p, lane),
-            on_hit: &mut *self.on_hit,
-            found: false,
-        };
-        let limit = quest.take_all(found, group, ends[1], &mut *self.visits);
+        let mut quest = Blocked::of(self.bundle, self.rays, self.targets, &mut *self.on_hit, p, lane);
+        let limit = quest.take_all(found, group, quest.start(), &mut *self.visits);
         self.blocked[p] |= u32::from(quest.found) << lane;
         limit
     }

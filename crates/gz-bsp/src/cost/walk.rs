@@ -5,7 +5,7 @@
 //! leaf unless t* is beyond the best hit so far. A node is left out only when its entry is beyond that hit, rounded up.
 
 use super::build::MOST_LEVELS;
-use super::slabs::{BundleSlabs, Slabs};
+use super::slabs::Slabs;
 use super::wide::{BspTree, Child, Target};
 use crate::Visits;
 use gz_core::kernel::{Asked, Candidates, FilterRay, Nearest, OnHit, RayBundle, TriGroup, is_hit};
@@ -102,6 +102,15 @@ pub(super) struct NearestOf<'q> {
     pub(super) best: Nearest,
 }
 
+impl<'q> NearestOf<'q> {
+    /// For a ray of a bundle, with the best hit that it has so far.
+    #[inline(always)]
+    pub(super) fn of(bundle: &RayBundle, rays: &'q RayBatch<'q>, targets: &'q Targets<'q>, p: usize, lane: usize) -> Self {
+        let ray = Asked::new(rays, bundle.place(p, lane));
+        Self { ray, tmin: bundle.tmin[p][lane], targets, best: bundle.nearest(p, lane) }
+    }
+}
+
 impl Quest for NearestOf<'_> {
     #[inline(always)]
     fn start(&self) -> f32 {
@@ -137,7 +146,22 @@ pub(super) struct Blocked<'q, K> {
     pub(super) found: bool,
 }
 
-impl<K: OnHit> Blocked<'_, K> {
+impl<'q, K: OnHit> Blocked<'q, K> {
+    /// For a ray of a bundle.
+    #[inline(always)]
+    pub(super) fn of(
+        bundle: &RayBundle,
+        rays: &'q RayBatch<'q>,
+        targets: &'q Targets<'q>,
+        on_hit: &'q mut K,
+        p: usize,
+        lane: usize,
+    ) -> Self {
+        let (place, ends) = (bundle.place(p, lane), [bundle.tmin[p][lane], bundle.limit[p][lane]]);
+        let (ray, leaves) = (Asked::new(rays, place), rays.left_by(place));
+        Self { ray, ends, targets, leaves, of: (p, lane), on_hit, found: false }
+    }
+
     #[inline(always)]
     fn ends_at(&mut self, tri: TriId) -> bool {
         self.on_hit.ends(tri, self.of.0, 1 << self.of.1, self.targets) != 0
@@ -166,62 +190,9 @@ impl<K: OnHit> Quest for Blocked<'_, K> {
 }
 
 impl BspTree<'_> {
-    /// Sends one ray of a bundle through what hangs under `child`, for its front-most hit.
-    #[allow(clippy::too_many_arguments)]
-    #[inline(always)]
-    pub(super) fn closest_alone<S: Simd>(
-        &self,
-        rays: &RayBatch<'_>,
-        bundle: &mut RayBundle,
-        slabs: &BundleSlabs,
-        p: usize,
-        lane: usize,
-        child: Child,
-        stack: &mut Stack,
-        targets: &Targets<'_>,
-        visits: &mut impl Visits,
-    ) {
-        let (ray, tmin) = (Asked::new(rays, bundle.place(p, lane)), bundle.tmin[p][lane]);
-        let mut quest = NearestOf { ray, tmin, targets, best: bundle.nearest(p, lane) };
-        let (own, filter) = (slabs.alone(p, lane, tmin), bundle.filter_ray(p, lane));
-        self.send_alone::<S>(&own, &filter, child, stack, &mut quest, visits);
-        bundle.set_nearest(p, lane, quest.best);
-    }
-
-    /// The same for whether it hits anything that it ends at.
-    #[allow(clippy::too_many_arguments)]
-    #[inline(always)]
-    pub(super) fn any_alone<S: Simd>(
-        &self,
-        rays: &RayBatch<'_>,
-        bundle: &RayBundle,
-        slabs: &BundleSlabs,
-        p: usize,
-        lane: usize,
-        child: Child,
-        stack: &mut Stack,
-        targets: &Targets<'_>,
-        on_hit: &mut impl OnHit,
-        visits: &mut impl Visits,
-    ) -> bool {
-        let (place, ends) = (bundle.place(p, lane), [bundle.tmin[p][lane], bundle.limit[p][lane]]);
-        let mut quest = Blocked {
-            ray: Asked::new(rays, place),
-            ends,
-            targets,
-            leaves: rays.left_by(place),
-            of: (p, lane),
-            on_hit,
-            found: false,
-        };
-        let (own, filter) = (slabs.alone(p, lane, ends[0]), bundle.filter_ray(p, lane));
-        self.send_alone::<S>(&own, &filter, child, stack, &mut quest, visits);
-        quest.found
-    }
-
     /// Sends one ray through what hangs under `child`.
     #[inline(always)]
-    fn send_alone<S: Simd>(
+    pub(super) fn send_alone<S: Simd>(
         &self,
         slabs: &Slabs,
         filter: &FilterRay,
