@@ -158,7 +158,7 @@ impl<'q, K: OnHit> Blocked<'q, K> {
         lane: usize,
     ) -> Self {
         let (place, ends) = (bundle.place(p, lane), [bundle.tmin[p][lane], bundle.limit[p][lane]]);
-        let (ray, leaves) = (Asked::new(rays, place), rays.left_by(place));
+        let (ray, leaves) = (Asked::new(rays, place), bundle.left_by(p, lane));
         Self { ray, ends, targets, leaves, of: (p, lane), on_hit, found: false }
     }
 

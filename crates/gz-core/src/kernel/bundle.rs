@@ -53,8 +53,11 @@ pub struct RayBundle {
     pub(super) moment: [Each; 3],
     /// In trace space.
     exact_origin: [[[f64; LANES]; PACKETS]; 3],
-    /// Triangles of the best hits; before there is one, the triangle that the ray leaves.
+    /// Triangles of the best hits; before there is one, any that the ray does not hit.
     pub(super) tris: [[TriId; LANES]; PACKETS],
+    /// Triangles that the rays leave, where `leaving` says that they do.
+    leaves: [[TriId; LANES]; PACKETS],
+    leaving: bool,
     /// Rays that have a hit.
     pub(super) found: Rays,
     pub(super) centre: [f32; 3],
@@ -85,6 +88,8 @@ impl RayBundle {
             moment: [NOTHING; 3],
             exact_origin: [[[0.0; LANES]; PACKETS]; 3],
             tris: [[NO_TRI; LANES]; PACKETS],
+            leaves: [[NO_TRI; LANES]; PACKETS],
+            leaving: false,
             found: [0; PACKETS],
             centre: [0.0; 3],
             margin: Margin::default(),
@@ -103,6 +108,7 @@ impl RayBundle {
         self.from = from;
         self.scale = space.scale.to_array();
         self.found = [0; PACKETS];
+        self.leaving = rays.leaves.is_some();
         self.common_origin = matches!(rays.origin, PerRay::One(_));
         self.common_direction = matches!(rays.direction, PerRay::One(_));
         let mut fit = [0; PACKETS];
@@ -115,10 +121,12 @@ impl RayBundle {
             take(&mut self.tmin[p], &rays.tmin, from, len);
             take(&mut self.limit[p], &rays.tmax, from, len);
             self.near[p] = self.limit[p];
+            self.tris[p] = [NO_TRI; LANES];
             if let Some(leaves) = rays.leaves {
-                self.tris[p][..len].copy_from_slice(&leaves[from..from + len]);
-            } else {
-                self.tris[p] = [NO_TRI; LANES];
+                match leaves[from..from + len].first_chunk() {
+                    Some(all) => self.leaves[p] = *all,
+                    None => self.leaves[p][..len].copy_from_slice(&leaves[from..from + len]),
+                }
             }
             *fit = self.fit::<S::Sixteen>(p, space.reach) & ((1u32 << len) - 1);
             // The least origins cannot be told from 0 in f32.
@@ -281,11 +289,24 @@ impl RayBundle {
         }
     }
 
+    /// The triangle that a ray leaves, or [`NO_TRI`].
+    #[inline(always)]
+    pub fn left_by(&self, p: usize, lane: usize) -> TriId {
+        if self.leaving { self.leaves[p][lane] } else { NO_TRI }
+    }
+
+    /// The rays of a packet for which there is no need to ask about a triangle, as they leave it or as it is their best hit already.
+    #[inline(always)]
+    pub(super) fn know<S: Simd>(&self, p: usize, tri: TriId) -> u32 {
+        let known = <S::Sixteen>::same(&self.tris[p], tri);
+        if self.leaving { known | <S::Sixteen>::same(&self.leaves[p], tri) } else { known }
+    }
+
     /// The best hit so far of one ray.
     #[inline(always)]
     pub fn nearest(&self, p: usize, lane: usize) -> Nearest {
         let found = self.found[p] >> lane & 1 != 0;
-        Nearest { lo: self.near[p][lane], hi: self.limit[p][lane], tri: self.tris[p][lane], found }
+        Nearest { lo: self.near[p][lane], hi: self.limit[p][lane], tri: self.tris[p][lane], leaves: self.left_by(p, lane), found }
     }
 
     /// Takes over a better one.

@@ -52,7 +52,7 @@ impl RayBundle {
                     continue;
                 }
                 let lines = self.lines::<S>(group, &prepared, k, p);
-                let possible = lines.possible::<S>() & together[p] & !<S::Sixteen>::same(&self.tris[p], tri);
+                let possible = lines.possible::<S>() & together[p] & !self.know::<S>(p, tri);
                 if possible == 0 {
                     continue;
                 }
@@ -130,7 +130,7 @@ impl RayBundle {
                     continue;
                 }
                 let lines = self.lines::<S>(group, &prepared, k, p);
-                let possible = lines.possible::<S>() & together[p] & !<S::Sixteen>::same(&self.tris[p], tri);
+                let possible = lines.possible::<S>() & together[p] & !self.know::<S>(p, tri);
                 if possible == 0 {
                     continue;
                 }
@@ -198,7 +198,7 @@ impl RayBundle {
             if tri == NO_TRI {
                 break;
             }
-            if tri != self.tris[p][lane]
+            if tri != self.left_by(p, lane)
                 && targets.sees(tri)
                 && found.is_hit(k, ray, ends, targets.position(tri))
                 && on_hit.ends(tri, p, 1 << lane, targets) != 0
