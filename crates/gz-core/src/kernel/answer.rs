@@ -101,19 +101,26 @@ impl<'p, S: Simd> EightPairs<'p, S> {
     /// [`t_u_v`] of each lane whose bit is set, as the hit of triangle `ids[lane]`; of others a miss. `ray` gives a lane's ray.
     #[inline(always)]
     pub(super) fn hits(&self, hit: u32, ids: &[TriId; 8], ray: impl Fn(usize) -> GzRay, hits: &mut [Hit]) {
-        let found = InDoubles::of(&Solution::quick(self.origin, self.direction, &self.wide_corners()));
-        let [lo, hi] = [found.t[0], found.t[1]];
-        let (lo, hi, v, w) = (S::narrow(lo), S::narrow(hi), S::narrow(found.v), S::narrow(found.w));
-        let zero = <S::Doubles>::splat(0.0);
-        let settled = lo.same_bits(hi) & !found.certainty.at_most(zero) & zero.at_most(found.weights);
-        write_hits::<S>(hit, ids, [lo, v, w], hits);
-        let mut open = hit & !settled;
+        let solution = Solution::quick(self.origin, self.direction, &self.wide_corners());
+        let mut open = write_settled::<S>(&solution, hit, ids, hits);
         while open != 0 {
             let lane = open.trailing_zeros() as usize;
             open &= open - 1;
             hits[lane] = alone(&ray(lane), ids[lane], self.corners[lane]);
         }
     }
+}
+
+/// [`EightPairs::hits`] from their quick solution; gives the lanes that it leaves open.
+#[inline(always)]
+pub(super) fn write_settled<S: Simd>(solution: &Solution<S::Doubles>, hit: u32, ids: &[TriId; 8], hits: &mut [Hit]) -> u32 {
+    let found = InDoubles::of(solution);
+    let [lo, hi] = [found.t[0], found.t[1]];
+    let (lo, hi, v, w) = (S::narrow(lo), S::narrow(hi), S::narrow(found.v), S::narrow(found.w));
+    let zero = <S::Doubles>::splat(0.0);
+    let settled = lo.same_bits(hi) & !found.certainty.at_most(zero) & zero.at_most(found.weights);
+    write_hits::<S>(hit, ids, [lo, v, w], hits);
+    hit & !settled
 }
 
 /// The corners of eight triangles, coordinate by coordinate.
@@ -144,15 +151,16 @@ pub(super) fn write_hits<S: Simd>(hit: u32, ids: &[TriId; 8], [t, u, v]: [S::Eig
     }
 }
 
+/// The hit of one ray and a triangle that are known to meet.
 #[cold]
 #[inline(never)]
-fn alone(ray: &GzRay, tri: TriId, corners: &[GzCoord; 3]) -> Hit {
+pub(super) fn alone(ray: &GzRay, tri: TriId, corners: &[GzCoord; 3]) -> Hit {
     let (t, u, v) = t_u_v(ray, corners);
     Hit { t, tri, u, v }
 }
 
 #[inline(always)]
-fn widen3<S: Simd>(rows: [S::Eight; 3]) -> [S::Doubles; 3] {
+pub(super) fn widen3<S: Simd>(rows: [S::Eight; 3]) -> [S::Doubles; 3] {
     [S::widen(rows[0]), S::widen(rows[1]), S::widen(rows[2])]
 }
 

@@ -2,14 +2,12 @@
 // Packets, axes and lanes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::answer::EightPairs;
 use super::filter::{FilterRay, GREATEST_DIRECTION, GREATEST_REACH, Margin};
 use super::group::cross;
 use super::nearest::Nearest;
-use super::plain_f32::plain_hits;
 use super::space::FilterSpace;
 use crate::simd::{Doubles, EightDoubles, Lanes, Simd, arrays3, coordinates, coordinates_f64};
-use crate::{GzCoord, Hit, NO_TRI, PerRay, RayBatch, TriId};
+use crate::{GzCoord, NO_TRI, PerRay, RayBatch, TriId};
 
 /// Rays that one operation works on.
 pub const LANES: usize = 16;
@@ -52,7 +50,7 @@ pub struct RayBundle {
     pub(super) shift: [Each; 3],
     pub(super) moment: [Each; 3],
     /// In trace space.
-    exact_origin: [[[f64; LANES]; PACKETS]; 3],
+    pub(super) exact_origin: [[[f64; LANES]; PACKETS]; 3],
     /// Triangles of the best hits; before there is one, any that the ray does not hit.
     pub(super) tris: [[TriId; LANES]; PACKETS],
     /// Triangles that the rays leave, where `leaving` says that they do.
@@ -68,7 +66,7 @@ pub struct RayBundle {
     pub(super) common_origin: bool,
     /// All directions are equal.
     pub(super) common_direction: bool,
-    scale: [f32; 3],
+    pub(super) scale: [f32; 3],
     /// The first ray's number in its batch.
     from: usize,
 }
@@ -317,41 +315,6 @@ impl RayBundle {
         self.tris[p][lane] = best.tri;
         self.found[p] |= u32::from(best.found) << lane;
     }
-
-    /// The answers of the first `hits.len()` rays.
-    #[inline(always)]
-    pub fn hits<S: Simd>(&self, rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], hits: &mut [Hit]) {
-        for (k, hits) in hits.chunks_mut(8).enumerate() {
-            let (p, half) = (k / 2, k % 2);
-            let found = self.found[p] >> (8 * half) & 0xff;
-            if found == 0 {
-                hits.fill(Hit::MISS);
-                continue;
-            }
-            let tris = eight(&self.tris[p], half);
-            let any = tris[found.trailing_zeros() as usize];
-            let corners = std::array::from_fn(|lane| {
-                let tri = if found >> lane & 1 != 0 { tris[lane] } else { any };
-                &positions[tri as usize]
-            });
-            if !S::CERTIFIED {
-                let [o, d] = [&self.origin, &self.direction];
-                let origin = [eight(&o[0][p], half), eight(&o[1][p], half), eight(&o[2][p], half)];
-                let direction = [eight(&d[0][p], half), eight(&d[1][p], half), eight(&d[2][p], half)];
-                plain_hits::<S>(origin, direction, self.scale, &corners, found, tris, hits);
-                continue;
-            }
-            let mut origin = [<S::Doubles>::splat(0.0); 3];
-            let mut direction = origin;
-            for axis in 0..3 {
-                origin[axis] = <S::Doubles>::load(eight(&self.exact_origin[axis][p], half));
-                let d = <S::Doubles>::widen(eight(&self.direction[axis][p], half));
-                direction[axis] = d.times(<S::Doubles>::splat(1.0 / f64::from(self.scale[axis])));
-            }
-            let pairs = EightPairs::<S> { origin, direction, corners };
-            pairs.hits(found, tris, |lane| rays.ray(self.place(p, 8 * half + lane)), hits);
-        }
-    }
 }
 
 /// Takes rays out of `fit` that are not valid after all.
@@ -444,7 +407,7 @@ fn padded<T: Copy, const N: usize>(points: &[T]) -> [T; N] {
 
 /// The lower or upper eight.
 #[inline(always)]
-fn eight<T>(row: &[T; LANES], half: usize) -> &[T; 8] {
+pub(super) fn eight<T>(row: &[T; LANES], half: usize) -> &[T; 8] {
     let (eights, _) = row.as_chunks();
     &eights[half]
 }

@@ -1,6 +1,7 @@
 //! Ray against triangle: a conservative filter, a certified f64 test, and an exact stage behind both.
 
 mod answer;
+mod answers;
 mod baldwin_weber;
 mod bundle;
 mod certify;

@@ -29,10 +29,15 @@ fn products<F: Doubles>(b: [F; 3], c: [F; 3]) -> [[F; 2]; 3] {
     [[b[1].times(c[2]), b[2].times(c[1])], [b[2].times(c[0]), b[0].times(c[2])], [b[0].times(c[1]), b[1].times(c[0])]]
 }
 
-/// d.(b x c) from [`products`].
+/// b x c from [`products`].
 #[inline(always)]
-fn triple<F: Doubles>(d: [F; 3], [x, y, z]: [[F; 2]; 3]) -> F {
-    d[0].times(x[0].minus(x[1])).plus(d[1].times(y[0].minus(y[1]))).plus(d[2].times(z[0].minus(z[1])))
+fn combined<F: Doubles>([x, y, z]: [[F; 2]; 3]) -> [F; 3] {
+    [x[0].minus(x[1]), y[0].minus(y[1]), z[0].minus(z[1])]
+}
+
+#[inline(always)]
+fn dot<F: Doubles>(a: [F; 3], b: [F; 3]) -> F {
+    a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]))
 }
 
 /// d.(b x c) with its error.
@@ -40,7 +45,7 @@ fn triple<F: Doubles>(d: [F; 3], [x, y, z]: [[F; 2]; 3]) -> F {
 fn volume<F: Doubles>(d: [F; 3], b: [F; 3], c: [F; 3], bound: f64) -> Bounded<F> {
     let products = products(b, c);
     let permanent = share(d[0], products[0]).plus(share(d[1], products[1])).plus(share(d[2], products[2]));
-    Bounded { value: triple(d, products), error: F::splat(bound).times(permanent) }
+    Bounded { value: dot(d, combined(products)), error: F::splat(bound).times(permanent) }
 }
 
 #[inline(always)]
@@ -52,6 +57,52 @@ fn share<F: Doubles>(d: F, [p, q]: [F; 2]) -> F {
 #[inline(always)]
 pub(super) fn extent<F: Doubles>(x: [F; 3]) -> F {
     x[0].abs().or_more(x[1].abs()).or_more(x[2].abs())
+}
+
+/// What a triangle has in common for all rays from one origin: P = e2 x A, Q = A x e1 and N = e1 x e2, so that V = d.P, W = d.Q, D = d.N and
+/// M = A.N.
+pub(super) struct Facing<F> {
+    pub(super) p: [F; 3],
+    pub(super) q: [F; 3],
+    pub(super) normal: [F; 3],
+    pub(super) m: F,
+    /// The greatest component of both edges.
+    pub(super) size: F,
+    /// The greatest component of A.
+    pub(super) away: F,
+}
+
+impl<F: Doubles> Facing<F> {
+    #[inline(always)]
+    pub(super) fn of(origin: [F; 3], corners: &[[F; 3]; 3]) -> Self {
+        let [a, b, c] = *corners;
+        let (e1, e2, from_origin) = (difference(b, a), difference(c, a), difference(a, origin));
+        let normal = combined(products(e1, e2));
+        Self {
+            p: combined(products(e2, from_origin)),
+            q: combined(products(from_origin, e1)),
+            normal,
+            m: dot(from_origin, normal),
+            size: extent(e1).or_more(extent(e2)),
+            away: extent(from_origin),
+        }
+    }
+
+    /// For a direction d: no permanent is above 2 |d| |b| |c|, with the sum of d's components and the greatest of b's and c's; the roundings
+    /// of that are within what the bounds have to spare.
+    #[inline(always)]
+    pub(super) fn quick(&self, d: [F; 3]) -> Solution<F> {
+        let area = self.size.times(self.size);
+        let speed = d[0].abs().plus(d[1].abs()).plus(d[2].abs());
+        let per_volume = speed.times(F::splat(2.0 * VOLUME_BOUND));
+        let error = per_volume.times(self.size).times(self.away);
+        Solution {
+            v: Bounded { value: dot(d, self.p), error },
+            w: Bounded { value: dot(d, self.q), error },
+            d: Bounded { value: dot(d, self.normal), error: per_volume.times(area) },
+            m: Bounded { value: self.m, error: F::splat(6.0 * DISTANCE_BOUND).times(self.away).times(area) },
+        }
+    }
 }
 
 /// All that f64 knows of a ray and a triangle, from edges e1 = b - a, e2 = c - a and A = a - o.
@@ -78,24 +129,10 @@ impl<F: Doubles> Solution<F> {
         }
     }
 
-    /// The same numbers with errors that are larger and quickly had: no permanent is above 2 |d| |b| |c|, with the sum of d's
-    /// components and the greatest of b's and c's; the roundings of that are within what the bounds have to spare.
+    /// The same numbers with errors that are larger and quickly had.
     #[inline(always)]
     pub(super) fn quick(origin: [F; 3], direction: [F; 3], corners: &[[F; 3]; 3]) -> Self {
-        let [a, b, c] = *corners;
-        let (e1, e2, from_origin) = (difference(b, a), difference(c, a), difference(a, origin));
-        let (size, away) = (extent(e1).or_more(extent(e2)), extent(from_origin));
-        let area = size.times(size);
-        let speed = direction[0].abs().plus(direction[1].abs()).plus(direction[2].abs());
-        let per_volume = speed.times(F::splat(2.0 * VOLUME_BOUND));
-        let error = per_volume.times(size).times(away);
-        let normal = products(e1, e2);
-        Self {
-            v: Bounded { value: triple(direction, products(e2, from_origin)), error },
-            w: Bounded { value: triple(direction, products(from_origin, e1)), error },
-            d: Bounded { value: triple(direction, normal), error: per_volume.times(area) },
-            m: Bounded { value: triple(from_origin, normal), error: F::splat(6.0 * DISTANCE_BOUND).times(away).times(area) },
-        }
+        Facing::of(origin, corners).quick(direction)
     }
 
     /// U = D - V - W.

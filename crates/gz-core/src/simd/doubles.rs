@@ -31,6 +31,8 @@ pub trait EightDoubles: Doubles {
     fn load(x: &[f64; 8]) -> Self;
     /// Lane `i` is `x[i]`, widened.
     fn widen(x: &[f32; 8]) -> Self;
+    /// Lane `i` is `x[places[i]]`, places counted from 0 again after 7.
+    fn pick(x: &[f64; 8], places: &[u32; 8]) -> Self;
     /// The lanes as an array.
     fn array(self) -> [f64; 8];
     /// Where `self` is at most `other`; clear for NaN.

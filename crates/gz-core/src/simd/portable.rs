@@ -195,6 +195,10 @@ impl EightDoubles for PortableDoubles {
         Self(x.map(f64::from))
     }
     #[inline(always)]
+    fn pick(x: &[f64; 8], places: &[u32; 8]) -> Self {
+        Self(places.map(|place| x[place as usize % 8]))
+    }
+    #[inline(always)]
     fn array(self) -> [f64; 8] {
         self.0
     }

@@ -67,6 +67,11 @@ impl EightDoubles for Avx2Doubles {
         Self(call!(_mm256_cvtps_pd(low)), call!(_mm256_cvtps_pd(high)))
     }
     #[inline(always)]
+    fn pick(x: &[f64; 8], places: &[u32; 8]) -> Self {
+        let [a, b, c, d, e, f, g, h] = places.map(|place| x[place as usize % 8]);
+        Self(call!(_mm256_setr_pd(a, b, c, d)), call!(_mm256_setr_pd(e, f, g, h)))
+    }
+    #[inline(always)]
     fn array(self) -> [f64; 8] {
         let mut out = [0.0; 8];
         // SAFETY: writes the 64 bytes of `out`, unaligned; features as above.
@@ -184,6 +189,14 @@ impl EightDoubles for Avx512Doubles {
     fn widen(x: &[f32; 8]) -> Self {
         // SAFETY: reads the 32 bytes of `x`, unaligned; features as above.
         Self(unsafe { _mm512_cvtps_pd(_mm256_loadu_ps(x.as_ptr())) })
+    }
+    #[inline(always)]
+    fn pick(x: &[f64; 8], places: &[u32; 8]) -> Self {
+        // SAFETY: reads the 64 bytes of `x` and the 32 of `places`, unaligned; features as above. Only the lowest three bits of a place count.
+        unsafe {
+            let places = _mm512_cvtepu32_epi64(_mm256_loadu_si256(places.as_ptr().cast()));
+            Self(_mm512_permutexvar_pd(places, _mm512_loadu_pd(x.as_ptr())))
+        }
     }
     #[inline(always)]
     fn array(self) -> [f64; 8] {

@@ -1,0 +1,170 @@
+//! The answers of a bundle's rays, eight at a time.
+//!
+//! Where rays have one origin and few triangles, as those of a camera do, what the formulas of `solution.rs` take from origin and triangle is
+//! formed once for each triangle, eight triangles side by side, and looked up by each ray: the same steps, so the same bits.
+// Packets, axes and lanes are numbers into several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
+use super::answer::{EightPairs, alone, corners_of, widen3, write_settled};
+use super::bundle::{LANES, PACKETS, RayBundle, eight};
+use super::plain_f32::plain_hits;
+use super::solution::Facing;
+use crate::simd::{Doubles, EightDoubles, Lanes, Simd};
+use crate::{GzCoord, Hit, RayBatch, TriId};
+
+/// So many triangles are looked for before it is asked whether the rays have few.
+const SAMPLE: usize = 4;
+
+/// The triangles that a bundle's rays hit, where they are few.
+struct Few {
+    /// Of those, in the order of the rays; unused places repeat the first.
+    tris: [TriId; 8],
+    /// The place of its triangle for each ray that has one.
+    places: [[u32; LANES]; PACKETS],
+}
+
+impl RayBundle {
+    /// The answers of the first `hits.len()` rays.
+    #[inline(always)]
+    pub fn hits<S: Simd>(&self, rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], hits: &mut [Hit]) {
+        let few = if S::CERTIFIED && self.common_origin { self.few::<S>() } else { None };
+        match few {
+            Some(few) => self.hits_of_few::<S>(&few, rays, positions, hits),
+            None => self.hits_of_each::<S>(rays, positions, hits),
+        }
+    }
+
+    /// The triangles, when there are at least one and at most eight.
+    #[inline(always)]
+    fn few<S: Simd>(&self) -> Option<Few> {
+        let mut few = Few { tris: [0; 8], places: [[0; LANES]; PACKETS] };
+        let mut left = self.found;
+        for k in 0..8 {
+            let Some(p) = (0..PACKETS).find(|&p| left[p] != 0) else {
+                break;
+            };
+            let tri = self.tris[p][left[p].trailing_zeros() as usize % LANES];
+            few.tris[k] = tri;
+            for q in p..PACKETS {
+                let same = <S::Sixteen>::same(&self.tris[q], tri) & left[q];
+                <S::Sixteen>::set_some(k as u32, same, &mut few.places[q]);
+                left[q] &= !same;
+            }
+            if k == 0 {
+                few.tris = [tri; 8];
+            }
+            if k + 1 == SAMPLE && 2 * super::count(&left) > super::count(&self.found) {
+                return None;
+            }
+        }
+        (left == [0; PACKETS] && self.found != left).then_some(few)
+    }
+
+    #[inline(always)]
+    fn hits_of_few<S: Simd>(&self, few: &Few, rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], hits: &mut [Hit]) {
+        let t = few.tris.map(|tri| &positions[tri as usize]);
+        let [a, b, c] = corners_of::<S>(&t);
+        let origin = [0, 1, 2].map(|axis| self.exact_origin[axis][0][0]);
+        let origin = [<S::Doubles>::splat(origin[0]), <S::Doubles>::splat(origin[1]), <S::Doubles>::splat(origin[2])];
+        let facing = Facing::of(origin, &[widen3::<S>(a), widen3::<S>(b), widen3::<S>(c)]);
+        let table = Table::of(&facing);
+        for (k, hits) in hits.chunks_mut(8).enumerate() {
+            let (p, half) = (k / 2, k % 2);
+            let found = self.found[p] >> (8 * half) & 0xff;
+            if found == 0 {
+                hits.fill(Hit::MISS);
+                continue;
+            }
+            let facing = table.look_up::<S::Doubles>(eight(&few.places[p], half));
+            let tris = eight(&self.tris[p], half);
+            let mut open = write_settled::<S>(&facing.quick(self.wide_direction::<S>(p, half)), found, tris, hits);
+            while open != 0 {
+                let lane = open.trailing_zeros() as usize;
+                open &= open - 1;
+                let tri = tris[lane];
+                hits[lane] = alone(&rays.ray(self.place(p, 8 * half + lane)), tri, &positions[tri as usize]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn hits_of_each<S: Simd>(&self, rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], hits: &mut [Hit]) {
+        for (k, hits) in hits.chunks_mut(8).enumerate() {
+            let (p, half) = (k / 2, k % 2);
+            let found = self.found[p] >> (8 * half) & 0xff;
+            if found == 0 {
+                hits.fill(Hit::MISS);
+                continue;
+            }
+            let tris = eight(&self.tris[p], half);
+            let any = tris[found.trailing_zeros() as usize];
+            let corners = std::array::from_fn(|lane| {
+                let tri = if found >> lane & 1 != 0 { tris[lane] } else { any };
+                &positions[tri as usize]
+            });
+            if !S::CERTIFIED {
+                let [o, d] = [&self.origin, &self.direction];
+                let origin = [eight(&o[0][p], half), eight(&o[1][p], half), eight(&o[2][p], half)];
+                let direction = [eight(&d[0][p], half), eight(&d[1][p], half), eight(&d[2][p], half)];
+                plain_hits::<S>(origin, direction, self.scale, &corners, found, tris, hits);
+                continue;
+            }
+            let mut origin = [<S::Doubles>::splat(0.0); 3];
+            for axis in 0..3 {
+                origin[axis] = <S::Doubles>::load(eight(&self.exact_origin[axis][p], half));
+            }
+            let pairs = EightPairs::<S> { origin, direction: self.wide_direction::<S>(p, half), corners };
+            pairs.hits(found, tris, |lane| rays.ray(self.place(p, 8 * half + lane)), hits);
+        }
+    }
+
+    /// Directions of eight rays in trace space.
+    #[inline(always)]
+    fn wide_direction<S: Simd>(&self, p: usize, half: usize) -> [S::Doubles; 3] {
+        let mut direction = [<S::Doubles>::splat(0.0); 3];
+        for axis in 0..3 {
+            let d = <S::Doubles>::widen(eight(&self.direction[axis][p], half));
+            direction[axis] = d.times(<S::Doubles>::splat(1.0 / f64::from(self.scale[axis])));
+        }
+        direction
+    }
+}
+
+/// Eight triangles' [`Facing`], number by number.
+#[repr(C, align(64))]
+struct Table([[f64; 8]; 12]);
+
+impl Table {
+    #[inline(always)]
+    fn of<D: EightDoubles>(facing: &Facing<D>) -> Self {
+        let Facing { p, q, normal: n, m, size, away } = facing;
+        Self([
+            p[0].array(),
+            p[1].array(),
+            p[2].array(),
+            q[0].array(),
+            q[1].array(),
+            q[2].array(),
+            n[0].array(),
+            n[1].array(),
+            n[2].array(),
+            m.array(),
+            size.array(),
+            away.array(),
+        ])
+    }
+
+    /// For each lane that of the triangle in one of the places.
+    #[inline(always)]
+    fn look_up<D: EightDoubles>(&self, places: &[u32; 8]) -> Facing<D> {
+        let [px, py, pz, qx, qy, qz, nx, ny, nz, m, size, away] = &self.0;
+        Facing {
+            p: [D::pick(px, places), D::pick(py, places), D::pick(pz, places)],
+            q: [D::pick(qx, places), D::pick(qy, places), D::pick(qz, places)],
+            normal: [D::pick(nx, places), D::pick(ny, places), D::pick(nz, places)],
+            m: D::pick(m, places),
+            size: D::pick(size, places),
+            away: D::pick(away, places),
+        }
+    }
+}
