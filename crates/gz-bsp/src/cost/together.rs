@@ -57,8 +57,8 @@ const FEW: u32 = 5;
 /// Those of one packet always do: their boxes cost one step of lanes each.
 const TOGETHER: u32 = 6;
 
-/// ... and when samples of them cross at least this share of the cells that any of the samples crosses.
-const ALIKE: u32 = 40;
+/// ... and when two samples of them have at least this share of the cells in common that one of both crosses.
+const ALIKE: u32 = 30;
 
 /// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
 struct Beam {
@@ -234,22 +234,26 @@ impl BspTree<'_> {
         }
     }
 
-    /// Whether a ray of each packet crosses about the same of the root's cells as the others: measuring all of them costs more than it saves
-    /// where rays go everywhere.
+    /// Whether a ray of the first packet and one of the last cross about the same of the root's cells: measuring all rays costs more than it
+    /// saves where they go everywhere.
     #[inline(always)]
     fn seem_together<S: Simd>(&self, slabs: &BundleSlabs, company: &Rays, bundle: &RayBundle) -> bool {
-        let (mut all, mut each, mut samples) = (0, 0, 0);
-        for p in 0..PACKETS {
-            if company[p] != 0 {
-                let lane = company[p].trailing_zeros() as usize % LANES;
-                let own = slabs.alone(p, lane, bundle.tmin[p][lane]);
-                let (_, crossed) = own.cross::<S::Eight>(&self.nodes[0], bundle.limit[p][lane]);
-                all |= crossed;
-                each += crossed.count_ones();
-                samples += 1;
-            }
+        let [Some(first), Some(last)] = [(0..PACKETS).find(|&p| company[p] != 0), (0..PACKETS).rfind(|&p| company[p] != 0)] else {
+            return false;
+        };
+        if first == last {
+            return true;
         }
-        each * 100 >= samples * all.count_ones() * ALIKE
+        let (one, other) = (self.sample::<S>(slabs, company, bundle, first), self.sample::<S>(slabs, company, bundle, last));
+        (one & other).count_ones() * 100 >= (one | other).count_ones() * ALIKE
+    }
+
+    /// The root's cells that the first ray of a packet's company crosses.
+    #[inline(always)]
+    fn sample<S: Simd>(&self, slabs: &BundleSlabs, company: &Rays, bundle: &RayBundle, p: usize) -> u32 {
+        let lane = company[p].trailing_zeros() as usize % LANES;
+        let own = slabs.alone(p, lane, bundle.tmin[p][lane]);
+        own.cross::<S::Eight>(&self.nodes[0], bundle.limit[p][lane]).1
     }
 
     /// Asks for what a walk will read next.
