@@ -1,9 +1,10 @@
 //! A bundle's rays through the tree together, as long as they go the same way.
 //!
-//! A node's eight cells are first held against the interval that all rays span, then each cell that this leaves against the rays one by
-//! one; the rays that cross it go on with it as a set. Entries and exits are computed as `slabs.rs` says, with the same constants, so
-//! what is said there of lost hits holds ray by ray. For the interval, rounding is monotone: its entry, rounded twice, is at most what any
-//! ray's would be if rounded twice, and that is at most the true one; so with its exit.
+//! A node's eight cells are held against the interval that all rays span. Each cell that this leaves waits, and when its turn has come and it
+//! is not behind all that was found meanwhile, it is held against the rays one by one; those that cross it go on with it as a set. Entries
+//! and exits are computed as `slabs.rs` says, with the same constants, so what is said there of lost hits holds ray by ray. For the interval,
+//! rounding is monotone: its entry, rounded twice, is at most what any ray's would be if rounded twice, and that is at most the true one; so
+//! with its exit.
 // Packets, axes and lanes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
@@ -11,19 +12,24 @@ use super::abreast::Abreast;
 use super::quest::BundleQuest;
 use super::slabs::BundleSlabs;
 use super::wide::{BspTree, Child, Target, Way, WideNode};
-use gz_core::kernel::{Each, LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, least};
+use gz_core::kernel::{LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, least};
 use gz_core::simd::{Lanes, Simd};
 
-/// A cell still to be visited, by which rays, and where each enters it.
-#[repr(C, align(64))]
+/// A cell still to be visited.
+#[repr(C, align(32))]
 #[derive(Clone, Copy)]
 pub(super) struct Waiting {
-    entries: Each,
+    /// Those that may cross it.
     rays: Rays,
+    /// No ray enters it before.
+    entry: f32,
     child: Child,
+    /// The cell's place: its node and the place there.
+    node: u32,
+    slot: u32,
 }
 
-const NOBODY: Waiting = Waiting { entries: [[0.0; LANES]; PACKETS], rays: [0; PACKETS], child: Child::NONE };
+const NOBODY: Waiting = Waiting { rays: [0; PACKETS], entry: 0.0, child: Child::NONE, node: 0, slot: 0 };
 
 /// Cells that wait, and room for more. Made once.
 pub(super) struct Queue {
@@ -53,12 +59,12 @@ impl Queue {
 
 /// Fewer rays than this go on by themselves, when all others are done.
 const FEW: u32 = 5;
-/// Rays of several packets go together when at the root they cross at least this share, in percent, of the cells that their interval crosses.
-/// Those of one packet always do: their boxes cost one step of lanes each.
-const TOGETHER: u32 = 6;
-
-/// ... and when two samples of them have at least this share of the cells in common that one of both crosses.
+/// Rays of several packets go together when two samples of them have at least this share, in percent, of those of the root's cells in common
+/// that either crosses ...
 const ALIKE: u32 = 30;
+/// ... and, where that is not all, when they cross at least this share of the cells that their interval crosses. Those of one packet always go
+/// together: their boxes cost one step of lanes each.
+const TOGETHER: u32 = 6;
 
 /// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
 struct Beam {
@@ -119,6 +125,26 @@ fn cross_one<L: Lanes<LANES>>(bundle: &RayBundle, slabs: &BundleSlabs, ends: &[[
     (enter, enter.at_most(leave))
 }
 
+/// Makes `active` those of `rays` and `live` that cross the cell with these planes; tells whether there are any.
+#[inline(always)]
+fn crossing<L: Lanes<LANES>>(
+    bundle: &RayBundle,
+    slabs: &BundleSlabs,
+    ends: &[[L; 2]; 3],
+    [rays, live]: [&Rays; 2],
+    active: &mut Rays,
+) -> bool {
+    let mut any = 0;
+    for p in 0..PACKETS {
+        active[p] = rays[p] & live[p];
+        if active[p] != 0 {
+            active[p] &= cross_one(bundle, slabs, ends, p).1;
+        }
+        any |= active[p];
+    }
+    any != 0
+}
+
 impl BspTree<'_> {
     /// Sends the rays of `company`, which go the same way along each axis as `way` says; gives up, before anything is tested, when they
     /// part at the root.
@@ -132,7 +158,8 @@ impl BspTree<'_> {
         abreast: &mut Abreast,
         quest: &mut Q,
     ) -> bool {
-        if !self.seem_together::<S>(slabs, company, quest.bundle()) {
+        let alike = self.likeness::<S>(slabs, company, quest.bundle());
+        if alike < ALIKE {
             return false;
         }
         let beam = Beam::of::<S>(quest.bundle(), slabs, way, company);
@@ -147,37 +174,28 @@ impl BspTree<'_> {
         loop {
             let node = &self.nodes[at];
             let (entries, crossed) = beam.cross::<S::Eight>(node, greatest_limit);
-            let (order, cells) = if Q::ORDERED { far_first(&entries.array(), crossed) } else { as_they_come(crossed) };
+            let entries = entries.array();
+            let (order, cells) = if Q::ORDERED { far_first(&entries, crossed) } else { as_they_come(crossed) };
             queue.make_room();
             for &slot in &order[..cells] {
                 let slot = usize::from(slot & 7);
                 let waiting = &mut queue.cells[queue.len];
-                let ends = beam.ends::<S::Sixteen>(node, slot);
-                let mut any = 0;
-                for p in 0..PACKETS {
-                    if active[p] == 0 {
-                        waiting.rays[p] = 0;
-                        continue;
-                    }
-                    let (entries, crossed) = cross_one::<S::Sixteen>(quest.bundle(), slabs, &ends, p);
-                    waiting.rays[p] = crossed & active[p];
-                    if Q::ORDERED {
-                        entries.store(&mut waiting.entries[p]);
-                    }
-                    any |= crossed & active[p];
-                }
-                if any != 0 {
-                    let child = node.children[slot];
-                    self.prefetch::<S>(child);
-                    waiting.child = child;
-                    queue.len += 1;
-                }
+                let child = node.children[slot];
+                *waiting = Waiting { rays: active, entry: entries[slot], child, node: at as u32, slot: slot as u32 };
+                queue.len += 1;
+                self.prefetch::<S>(child);
             }
             if at == 0 {
-                let crossings: u32 = queue.cells[..queue.len].iter().map(|waiting| count(&waiting.rays)).sum();
-                let packets = company.iter().filter(|&&rays| rays != 0).count();
-                if packets > 1 && crossings * 100 < count(company) * cells as u32 * TOGETHER {
-                    return false;
+                if alike < 100 {
+                    let mut crossings = 0;
+                    for waiting in &mut queue.cells[..queue.len] {
+                        let ends = beam.ends::<S::Sixteen>(node, waiting.slot as usize & 7);
+                        crossing(quest.bundle(), slabs, &ends, [company, company], &mut waiting.rays);
+                        crossings += count(&waiting.rays);
+                    }
+                    if crossings * 100 < count(company) * cells as u32 * TOGETHER {
+                        return false;
+                    }
                 }
                 spans = Spans::of::<S>(quest.bundle(), company);
             }
@@ -187,16 +205,11 @@ impl BspTree<'_> {
                 }
                 queue.len -= 1;
                 let waiting = &queue.cells[queue.len];
-                let mut any = 0;
-                for p in 0..PACKETS {
-                    active[p] = waiting.rays[p] & live[p];
-                    if Q::ORDERED && active[p] != 0 {
-                        let limits = <S::Sixteen>::load(&quest.bundle().limit[p]);
-                        active[p] &= <S::Sixteen>::load(&waiting.entries[p]).at_most(limits);
-                    }
-                    any |= active[p];
+                if Q::ORDERED && waiting.entry > greatest_limit {
+                    continue;
                 }
-                if any == 0 {
+                let ends = beam.ends::<S::Sixteen>(&self.nodes[waiting.node as usize], waiting.slot as usize & 7);
+                if !crossing(quest.bundle(), slabs, &ends, [&waiting.rays, &live], &mut active) {
                     continue;
                 }
                 let child = waiting.child;
@@ -205,7 +218,7 @@ impl BspTree<'_> {
                         if count(&active) >= FEW {
                             break index;
                         }
-                        active = leave_few(&queue.cells[queue.len], &active, slabs, abreast, quest);
+                        active = leave_few(&ends, child, &active, slabs, abreast, quest);
                         if active != [0; PACKETS] {
                             break index;
                         }
@@ -234,18 +247,19 @@ impl BspTree<'_> {
         }
     }
 
-    /// Whether a ray of the first packet and one of the last cross about the same of the root's cells: measuring all rays costs more than it
-    /// saves where they go everywhere.
+    /// Of the root's cells that a ray of the first packet or one of the last crosses, the share in percent that both do: measuring all rays
+    /// costs more than it saves where they go everywhere.
     #[inline(always)]
-    fn seem_together<S: Simd>(&self, slabs: &BundleSlabs, company: &Rays, bundle: &RayBundle) -> bool {
-        let [Some(first), Some(last)] = [(0..PACKETS).find(|&p| company[p] != 0), (0..PACKETS).rfind(|&p| company[p] != 0)] else {
-            return false;
+    fn likeness<S: Simd>(&self, slabs: &BundleSlabs, company: &Rays, bundle: &RayBundle) -> u32 {
+        let [Some(first), Some(last)] = [(0..PACKETS).find(|&p| company[p] != 0), (0..PACKETS).rfind(|&p| company[p] != 0)]
+        else {
+            return 0;
         };
         if first == last {
-            return true;
+            return 100;
         }
         let (one, other) = (self.sample::<S>(slabs, company, bundle, first), self.sample::<S>(slabs, company, bundle, last));
-        (one & other).count_ones() * 100 >= (one | other).count_ones() * ALIKE
+        if one == other { 100 } else { (one & other).count_ones() * 100 / (one | other).count_ones() }
     }
 
     /// The root's cells that the first ray of a packet's company crosses.
@@ -266,17 +280,28 @@ impl BspTree<'_> {
     }
 }
 
-/// Leaves the rays of `active` that wait at a cell to themselves; gives those for which there is no room.
+/// Leaves a cell, of these planes, to each of the rays of `active` by itself; gives those for which there is no room.
 #[inline(always)]
-fn leave_few<Q: BundleQuest>(waiting: &Waiting, active: &Rays, slabs: &BundleSlabs, abreast: &mut Abreast, quest: &Q) -> Rays {
+fn leave_few<L: Lanes<LANES>, Q: BundleQuest>(
+    ends: &[[L; 2]; 3],
+    child: Child,
+    active: &Rays,
+    slabs: &BundleSlabs,
+    abreast: &mut Abreast,
+    quest: &Q,
+) -> Rays {
     let (bundle, mut left) = (quest.bundle(), *active);
     for p in 0..PACKETS {
         let mut few = active[p];
+        if few == 0 {
+            continue;
+        }
+        let entries = cross_one(bundle, slabs, ends, p).0.array();
         while few != 0 {
             let lane = few.trailing_zeros() as usize;
             few &= few - 1;
-            let entry = if Q::ORDERED { waiting.entries[p][lane] } else { bundle.tmin[p][lane] };
-            if abreast.leave(bundle, slabs, [p, lane], waiting.child, entry) {
+            let entry = if Q::ORDERED { entries[lane] } else { bundle.tmin[p][lane] };
+            if abreast.leave(bundle, slabs, [p, lane], child, entry) {
                 left[p] &= !(1 << lane);
             }
         }
