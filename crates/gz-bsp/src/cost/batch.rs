@@ -9,7 +9,7 @@ use super::together::Queue;
 use super::walk::{Blocked, NearestOf, Stack};
 use super::wide::BspTree;
 use crate::Visits;
-use gz_core::kernel::{Asked, BUNDLE, GoingThrough, LANES, Nearest, OnHit, PACKETS, RayBundle, Rays, Stopped, count};
+use gz_core::kernel::{Asked, BUNDLE, GoingThrough, LANES, Nearest, OnHit, PACKETS, RayBundle, Rays, Stopped, count, is_none};
 use gz_core::simd::{Simd, Task, dispatch};
 use gz_core::{ClassMask, GzRay, Hit, Passages, PerRay, RayBatch, RayQuery, Targets, TriBuffer, with_default_float_control};
 
@@ -248,9 +248,14 @@ impl BspTree<'_> {
                 }
                 if self.send_together::<S, _>(slabs, way, &part, queue, abreast, &mut quest) {
                     take_out(&part, &mut company);
+                    if is_none(&company) {
+                        break;
+                    }
                 }
             }
-            abreast.send(quest.bundle(), slabs, &company);
+            if !is_none(&company) {
+                abreast.send(quest.bundle(), slabs, &company);
+            }
         }
         self.send_abreast::<S, Q>(slabs, abreast, stack, quest);
     }

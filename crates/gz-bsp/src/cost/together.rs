@@ -12,7 +12,7 @@ use super::abreast::Abreast;
 use super::quest::BundleQuest;
 use super::slabs::BundleSlabs;
 use super::wide::{BspTree, Child, Target, Way, WideNode};
-use gz_core::kernel::{LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, least};
+use gz_core::kernel::{LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, is_none, least};
 use gz_core::simd::{Lanes, Simd};
 
 /// A cell still to be visited.
@@ -219,7 +219,7 @@ impl BspTree<'_> {
                             break index;
                         }
                         active = leave_few(&ends, child, &active, slabs, abreast, quest);
-                        if active != [0; PACKETS] {
+                        if !is_none(&active) {
                             break index;
                         }
                     }
@@ -231,7 +231,7 @@ impl BspTree<'_> {
                                     live[p] &= !over[p];
                                     active[p] &= !over[p];
                                 }
-                                if active == [0; PACKETS] {
+                                if is_none(&active) {
                                     break;
                                 }
                             }
@@ -240,7 +240,7 @@ impl BspTree<'_> {
                 }
                 if Q::ORDERED {
                     greatest_limit = greatest::<S>(&quest.bundle().limit, company);
-                } else if live == [0; PACKETS] {
+                } else if is_none(&live) {
                     return true;
                 }
             };

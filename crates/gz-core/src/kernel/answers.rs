@@ -6,7 +6,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::answer::{EightPairs, alone, corners_of, widen3, write_settled};
-use super::bundle::{LANES, PACKETS, RayBundle, eight};
+use super::bundle::{LANES, PACKETS, RayBundle, count, eight, is_none};
 use super::plain_f32::plain_hits;
 use super::solution::Facing;
 use crate::simd::{Doubles, EightDoubles, Lanes, Simd};
@@ -53,11 +53,11 @@ impl RayBundle {
             if k == 0 {
                 few.tris = [tri; 8];
             }
-            if k + 1 == SAMPLE && 2 * super::count(&left) > super::count(&self.found) {
+            if k + 1 == SAMPLE && 2 * count(&left) > count(&self.found) {
                 return None;
             }
         }
-        (left == [0; PACKETS] && self.found != left).then_some(few)
+        (is_none(&left) && !is_none(&self.found)).then_some(few)
     }
 
     #[inline(always)]

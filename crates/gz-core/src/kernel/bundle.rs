@@ -32,6 +32,13 @@ pub fn count(rays: &Rays) -> u32 {
     rays.iter().map(|packet| packet.count_ones()).sum()
 }
 
+/// Whether there is no ray in a set.
+// Not by comparing arrays, as that goes through memory.
+#[inline(always)]
+pub fn is_none(rays: &Rays) -> bool {
+    rays.iter().fold(0, |any, packet| any | packet) == 0
+}
+
 /// Up to sixty-four rays of a batch and the best hit of each so far. Made once and filled again and again.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -133,7 +140,7 @@ impl RayBundle {
         if tiny != 0 {
             drop_invalid(&mut fit, rays, from);
         }
-        if fit != [0; PACKETS] {
+        if !is_none(&fit) {
             self.settle_down::<S>(&fit, packets);
         }
         fit

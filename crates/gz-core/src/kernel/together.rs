@@ -2,7 +2,7 @@
 // Packets, axes and lanes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::bundle::{LANES, PACKETS, RayBundle, Rays, packet_of};
+use super::bundle::{LANES, PACKETS, RayBundle, Rays, is_none, packet_of};
 use super::filter::{Judged, distance, judge};
 use super::group::{TriGroup, cross, dot, minus3};
 use super::nearest::Asked;
@@ -150,7 +150,7 @@ impl RayBundle {
                 together[p] &= !hit;
                 hits[p] |= hit;
             }
-            if together == [0; PACKETS] {
+            if is_none(&together) {
                 break;
             }
         }
