@@ -25,23 +25,14 @@ fn first(rays: &Rays) -> Option<(usize, usize)> {
     (0..PACKETS).find(|&p| rays[p] != 0).map(|p| (p, rays[p].trailing_zeros() as usize))
 }
 
-/// A company, and if it has more than one packet, each packet of it: neighbours may go together where not all do.
+/// Part `i` of a company: all of it, and then each packet, as neighbours may go together where not all do.
 #[inline(always)]
-fn parts(company: &Rays) -> [Rays; 1 + PACKETS] {
-    let mut parts = [[0; PACKETS]; 1 + PACKETS];
-    parts[0] = *company;
+fn part(company: &Rays, i: usize) -> Rays {
+    let mut part = *company;
     for p in 0..PACKETS {
-        if company[p].count_ones() != count(company) {
-            parts[1 + p][p] = company[p];
-        }
+        part[p] = if i == 0 || i == p + 1 { company[p] } else { 0 };
     }
-    parts
-}
-
-/// Whether all of `part` are still in `company`.
-#[inline(always)]
-fn is_within(part: &Rays, company: &Rays) -> bool {
-    (0..PACKETS).all(|p| part[p] & !company[p] == 0)
+    part
 }
 
 /// Takes the rays of `part` out of `company`.
@@ -242,11 +233,10 @@ impl BspTree<'_> {
             let mut company = slabs.company(p, lane, &left);
             take_out(&company, &mut left);
             let way = slabs.way(p, lane);
-            for part in parts(&company) {
-                if count(&part) < COMPANY || !is_within(&part, &company) {
-                    continue;
-                }
-                if self.send_together::<S, _>(slabs, way, &part, queue, abreast, &mut quest) {
+            let parts = if company[p].count_ones() == count(&company) { 1 } else { 1 + PACKETS };
+            for i in 0..parts {
+                let part = part(&company, i);
+                if count(&part) >= COMPANY && self.send_together::<S, _>(slabs, way, &part, queue, abreast, &mut quest) {
                     take_out(&part, &mut company);
                     if is_none(&company) {
                         break;
