@@ -43,6 +43,14 @@ fn take_out(part: &Rays, company: &mut Rays) {
     }
 }
 
+/// Puts the rays of `part` into `company`.
+#[inline(always)]
+fn add(part: &Rays, company: &mut Rays) {
+    for p in 0..PACKETS {
+        company[p] |= part[p];
+    }
+}
+
 impl RayQuery for BspTree<'_> {
     fn tris(&self) -> &TriBuffer {
         self.tris
@@ -228,7 +236,7 @@ impl BspTree<'_> {
         abreast: &mut Abreast,
         mut quest: Q,
     ) {
-        let mut left = *fit;
+        let (mut left, mut lonely) = (*fit, [0; PACKETS]);
         while let Some((p, lane)) = first(&left) {
             let mut company = slabs.company(p, lane, &left);
             take_out(&company, &mut left);
@@ -243,9 +251,10 @@ impl BspTree<'_> {
                     }
                 }
             }
-            if !is_none(&company) {
-                abreast.send(quest.bundle(), slabs, &company);
-            }
+            add(&company, &mut lonely);
+        }
+        if !is_none(&lonely) {
+            abreast.send(quest.bundle(), slabs, &lonely);
         }
         self.send_abreast::<S, Q>(slabs, abreast, stack, quest);
     }
