@@ -9,7 +9,9 @@ use super::together::Queue;
 use super::walk::{Blocked, NearestOf, Stack};
 use super::wide::BspTree;
 use crate::Visits;
-use gz_core::kernel::{Asked, BUNDLE, GoingThrough, LANES, Nearest, OnHit, PACKETS, RayBundle, Rays, Stopped, count, is_none};
+use gz_core::kernel::{
+    Asked, BUNDLE, GoingThrough, LANES, Nearest, OnHit, PACKETS, RayBundle, Rays, Stopped, count, first, is_none,
+};
 use gz_core::simd::{Simd, Task, dispatch};
 use gz_core::{ClassMask, GzRay, Hit, Passages, PerRay, RayBatch, RayQuery, Targets, TriBuffer, with_default_float_control};
 
@@ -18,12 +20,6 @@ use std::ops::{Deref, DerefMut};
 
 /// Rays that go the same way go together from this number on.
 const COMPANY: u32 = 16;
-
-/// The first ray of a set.
-#[inline(always)]
-fn first(rays: &Rays) -> Option<(usize, usize)> {
-    (0..PACKETS).find(|&p| rays[p] != 0).map(|p| (p, rays[p].trailing_zeros() as usize))
-}
 
 /// Part `i` of a company: all of it, and then each packet, as neighbours may go together where not all do.
 #[inline(always)]

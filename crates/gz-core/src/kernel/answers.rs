@@ -6,10 +6,10 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::answer::{EightPairs, alone, corners_of, widen3, write_settled};
-use super::bundle::{LANES, PACKETS, RayBundle, count, eight, is_none};
+use super::bundle::{LANES, PACKETS, RayBundle, count, eight, first, is_none};
 use super::plain_f32::plain_hits;
 use super::solution::Facing;
-use crate::simd::{Doubles, EightDoubles, Lanes, Simd};
+use crate::simd::{EightDoubles, Lanes, Simd};
 use crate::{GzCoord, Hit, RayBatch, TriId};
 
 /// So many triangles are looked for before it is asked whether the rays have few.
@@ -40,10 +40,8 @@ impl RayBundle {
         let mut few = Few { tris: [0; 8], places: [[0; LANES]; PACKETS] };
         let mut left = self.found;
         for k in 0..8 {
-            let Some(p) = (0..PACKETS).find(|&p| left[p] != 0) else {
-                break;
-            };
-            let tri = self.tris[p][left[p].trailing_zeros() as usize % LANES];
+            let Some((p, lane)) = first(&left) else { break };
+            let tri = self.tris[p][lane];
             few.tris[k] = tri;
             for q in p..PACKETS {
                 let same = <S::Sixteen>::same(&self.tris[q], tri) & left[q];
@@ -64,9 +62,7 @@ impl RayBundle {
     fn hits_of_few<S: Simd>(&self, few: &Few, rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], hits: &mut [Hit]) {
         let t = few.tris.map(|tri| &positions[tri as usize]);
         let [a, b, c] = corners_of::<S>(&t);
-        let origin = [0, 1, 2].map(|axis| self.exact_origin[axis][0][0]);
-        let origin = [<S::Doubles>::splat(origin[0]), <S::Doubles>::splat(origin[1]), <S::Doubles>::splat(origin[2])];
-        let facing = Facing::of(origin, &[widen3::<S>(a), widen3::<S>(b), widen3::<S>(c)]);
+        let facing = Facing::of(self.exact_origins::<S>(0, 0), &[widen3::<S>(a), widen3::<S>(b), widen3::<S>(c)]);
         let table = Table::of(&facing);
         for (k, hits) in hits.chunks_mut(8).enumerate() {
             let (p, half) = (k / 2, k % 2);
@@ -77,7 +73,7 @@ impl RayBundle {
             }
             let facing = table.look_up::<S::Doubles>(eight(&few.places[p], half));
             let tris = eight(&self.tris[p], half);
-            let mut open = write_settled::<S>(&facing.quick(self.wide_direction::<S>(p, half)), found, tris, hits);
+            let mut open = write_settled::<S>(&facing.quick(self.exact_directions::<S>(p, half)), found, tris, hits);
             while open != 0 {
                 let lane = open.trailing_zeros() as usize;
                 open &= open - 1;
@@ -109,24 +105,10 @@ impl RayBundle {
                 plain_hits::<S>(origin, direction, self.scale, &corners, found, tris, hits);
                 continue;
             }
-            let mut origin = [<S::Doubles>::splat(0.0); 3];
-            for axis in 0..3 {
-                origin[axis] = <S::Doubles>::load(eight(&self.exact_origin[axis][p], half));
-            }
-            let pairs = EightPairs::<S> { origin, direction: self.wide_direction::<S>(p, half), corners };
+            let (origin, direction) = (self.exact_origins::<S>(p, half), self.exact_directions::<S>(p, half));
+            let pairs = EightPairs::<S> { origin, direction, corners };
             pairs.hits(found, tris, |lane| rays.ray(self.place(p, 8 * half + lane)), hits);
         }
-    }
-
-    /// Directions of eight rays in trace space.
-    #[inline(always)]
-    fn wide_direction<S: Simd>(&self, p: usize, half: usize) -> [S::Doubles; 3] {
-        let mut direction = [<S::Doubles>::splat(0.0); 3];
-        for axis in 0..3 {
-            let d = <S::Doubles>::widen(eight(&self.direction[axis][p], half));
-            direction[axis] = d.times(<S::Doubles>::splat(1.0 / f64::from(self.scale[axis])));
-        }
-        direction
     }
 }
 

@@ -32,6 +32,12 @@ pub fn count(rays: &Rays) -> u32 {
     rays.iter().map(|packet| packet.count_ones()).sum()
 }
 
+/// The first ray of a set.
+#[inline(always)]
+pub fn first(rays: &Rays) -> Option<(usize, usize)> {
+    (0..PACKETS).find(|&p| rays[p] != 0).map(|p| (p, rays[p].trailing_zeros() as usize % LANES))
+}
+
 /// Whether there is no ray in a set.
 // Not by comparing arrays, as that goes through memory.
 #[inline(always)]
@@ -56,8 +62,8 @@ pub struct RayBundle {
     /// The origin as seen from the centre, s, and d x s.
     pub(super) shift: [Each; 3],
     pub(super) moment: [Each; 3],
-    /// In trace space.
-    pub(super) exact_origin: [[[f64; LANES]; PACKETS]; 3],
+    /// Origins in stretched coordinates.
+    exact_origin: [[[f64; LANES]; PACKETS]; 3],
     /// Triangles of the best hits; before there is one, any that the ray does not hit.
     pub(super) tris: [[TriId; LANES]; PACKETS],
     /// Triangles that the rays leave, where `leaving` says that they do.
@@ -73,6 +79,9 @@ pub struct RayBundle {
     pub(super) common_origin: bool,
     /// All directions are equal.
     pub(super) common_direction: bool,
+    /// The rays that the f32 kernels take, and the least and greatest of their directions.
+    pub(super) fit: Rays,
+    pub(super) span: [[f32; 3]; 2],
     pub(super) scale: [f32; 3],
     /// The first ray's number in its batch.
     from: usize,
@@ -101,6 +110,8 @@ impl RayBundle {
             alone: Margin::default(),
             common_origin: false,
             common_direction: false,
+            fit: [0; PACKETS],
+            span: [[0.0; 3]; 2],
             scale: [1.0; 3],
             from: 0,
         }
@@ -173,8 +184,9 @@ impl RayBundle {
         match rays.origin {
             PerRay::One(o) => {
                 for (axis, o) in o.to_array().into_iter().enumerate() {
+                    let o = o * f64::from(self.scale[axis]);
                     self.exact_origin[axis][p] = [o; LANES];
-                    self.origin[axis][p] = [(o * f64::from(self.scale[axis])) as f32; LANES];
+                    self.origin[axis][p] = [o as f32; LANES];
                 }
             }
             PerRay::Each(all) => {
@@ -187,10 +199,10 @@ impl RayBundle {
                         None => <S::Doubles>::unzip3(&padded(eight)),
                     };
                     for axis in 0..3 {
-                        if S::CERTIFIED {
-                            *eight_mut(&mut self.exact_origin[axis][p], half) = points[axis].array();
-                        }
                         let stretched = points[axis].times(<S::Doubles>::splat(f64::from(self.scale[axis])));
+                        if S::CERTIFIED {
+                            *eight_mut(&mut self.exact_origin[axis][p], half) = stretched.array();
+                        }
                         halves[axis][half] = S::narrow(stretched);
                     }
                 }
@@ -234,18 +246,23 @@ impl RayBundle {
         let zero = <S::Sixteen>::splat(0.0);
         let mut spread = zero;
         // The greatest of each component rather than of their sums: that is what `spans.rs` needs.
-        let [low, high] = extremes::<S>(&self.direction, &self.direction, fit);
-        let size = low[0].abs().max(high[0]) + low[1].abs().max(high[1]) + low[2].abs().max(high[2]);
-        let size = size * (1.0 + 2.0 * f32::EPSILON);
-        let mut reach = 0.0f32;
-        let ends = match self.common_origin {
-            true => [[self.origin[0][0][0], self.origin[1][0][0], self.origin[2][0][0]]; 2],
-            false => extremes::<S>(&self.origin, &self.origin, fit),
+        let [low, high] = match self.common_direction {
+            true => [[self.direction[0][0][0], self.direction[1][0][0], self.direction[2][0][0]]; 2],
+            false => extremes::<S>(&self.direction, &self.direction, fit),
         };
-        for axis in 0..3 {
-            let (least, greatest) = (ends[0][axis], ends[1][axis]);
-            self.centre[axis] = if self.common_origin { least } else { least * 0.5 + greatest * 0.5 };
-            reach = reach.max(least.abs()).max(greatest.abs());
+        (self.fit, self.span) = (*fit, [low, high]);
+        let size = low[0].abs().max(high[0].abs()) + low[1].abs().max(high[1].abs()) + low[2].abs().max(high[2].abs());
+        let size = size * (1.0 + 2.0 * f32::EPSILON);
+        let (p, lane) = first(fit).unwrap_or_default();
+        self.centre = [self.origin[0][p][lane], self.origin[1][p][lane], self.origin[2][p][lane]];
+        let mut reach = self.centre[0].abs().max(self.centre[1].abs()).max(self.centre[2].abs());
+        if !self.common_origin {
+            let mut far = zero;
+            for p in 0..packets {
+                let o = packet_of::<S::Sixteen>(&self.origin, p);
+                far = far.max(o[0].abs().max(o[1].abs()).max(o[2].abs()).select(fit[p], zero));
+            }
+            reach = far.greatest();
         }
         // Half a unit in the last place, and what the least numbers lose.
         let lost = reach * f32::EPSILON + f32::MIN_POSITIVE;
@@ -256,12 +273,11 @@ impl RayBundle {
         }
         for p in 0..packets {
             for axis in 0..3 {
-                let (centre, scale) = (f64::from(self.centre[axis]), f64::from(self.scale[axis]));
                 let shift = if S::CERTIFIED {
-                    let (scale, centre) = (<S::Doubles>::splat(scale), <S::Doubles>::splat(centre));
+                    let centre = <S::Doubles>::splat(f64::from(self.centre[axis]));
                     let low = <S::Doubles>::load(eight(&self.exact_origin[axis][p], 0));
                     let high = <S::Doubles>::load(eight(&self.exact_origin[axis][p], 1));
-                    S::join(S::narrow(low.times(scale).minus(centre)), S::narrow(high.times(scale).minus(centre)))
+                    S::join(S::narrow(low.minus(centre)), S::narrow(high.minus(centre)))
                 } else {
                     <S::Sixteen>::load(&self.origin[axis][p]).minus(<S::Sixteen>::splat(self.centre[axis]))
                 };
@@ -275,6 +291,28 @@ impl RayBundle {
             }
         }
         self.margin = Margin::new(size, spread.greatest(), 0.0);
+    }
+
+    /// Origins of eight rays in trace space.
+    #[inline(always)]
+    pub(super) fn exact_origins<S: Simd>(&self, p: usize, half: usize) -> [S::Doubles; 3] {
+        let mut origin = [<S::Doubles>::splat(0.0); 3];
+        for axis in 0..3 {
+            let o = <S::Doubles>::load(eight(&self.exact_origin[axis][p], half));
+            origin[axis] = o.times(<S::Doubles>::splat(1.0 / f64::from(self.scale[axis])));
+        }
+        origin
+    }
+
+    /// Directions of eight rays in trace space.
+    #[inline(always)]
+    pub(super) fn exact_directions<S: Simd>(&self, p: usize, half: usize) -> [S::Doubles; 3] {
+        let mut direction = [<S::Doubles>::splat(0.0); 3];
+        for axis in 0..3 {
+            let d = <S::Doubles>::widen(eight(&self.direction[axis][p], half));
+            direction[axis] = d.times(<S::Doubles>::splat(1.0 / f64::from(self.scale[axis])));
+        }
+        direction
     }
 
     /// Number of a ray in its batch.

@@ -16,7 +16,7 @@
 // Axes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::bundle::{Each, RayBundle, Rays, extremes};
+use super::bundle::{RayBundle, Rays, extremes};
 use crate::simd::{Lanes, Simd};
 
 const E: f32 = f32::EPSILON / 2.0;
@@ -50,16 +50,10 @@ impl Spans {
     #[inline(always)]
     pub fn of<S: Simd>(bundle: &RayBundle, company: &Rays) -> Self {
         let mut spans = Self::default();
-        if bundle.common_direction {
-            for axis in 0..3 {
-                let d = bundle.direction[axis][0][0];
-                spans.direction[axis] = Span::new(d, d);
-            }
-        } else {
-            spans.direction = of_each::<S>(&bundle.direction, company);
-        }
+        let known = bundle.common_direction || *company == bundle.fit;
+        spans.direction = between(if known { bundle.span } else { extremes::<S>(&bundle.direction, &bundle.direction, company) });
         if !bundle.common_origin {
-            spans.moment = of_each::<S>(&bundle.moment, company);
+            spans.moment = between(extremes::<S>(&bundle.moment, &bundle.moment, company));
         }
         spans
     }
@@ -86,10 +80,9 @@ impl Spans {
     }
 }
 
-/// The intervals of three numbers of the rays of `company`.
+/// Intervals by their ends.
 #[inline(always)]
-fn of_each<S: Simd>(rows: &[Each; 3], company: &Rays) -> [Span; 3] {
-    let [least, greatest] = extremes::<S>(rows, rows, company);
+fn between([least, greatest]: [[f32; 3]; 2]) -> [Span; 3] {
     [Span::new(least[0], greatest[0]), Span::new(least[1], greatest[1]), Span::new(least[2], greatest[2])]
 }
 
