@@ -61,7 +61,8 @@ impl BundleSlabs {
                 pad = whole.mul_add(L::splat(STILL_PAD), pad).select(still, pad);
                 d = L::splat(0.0).minus(least).select(down, least).select(still, d);
             }
-            let inverse = L::splat(1.0).over(d);
+            let known = p > 0 && bundle.common_direction;
+            let inverse = if known { L::load(&self.inverse[axis][0]) } else { L::splat(1.0).over(d) };
             let (c, pad) = (o.times(inverse), pad.mul_add(inverse.abs(), L::splat(f32::MIN_POSITIVE)));
             inverse.store(&mut self.inverse[axis][p]);
             c.plus(pad).store(&mut self.enter[axis][p]);

@@ -12,7 +12,7 @@ use super::abreast::Abreast;
 use super::quest::BundleQuest;
 use super::slabs::BundleSlabs;
 use super::wide::{BspTree, Child, Target, Way, WideNode};
-use gz_core::kernel::{LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, is_none, least};
+use gz_core::kernel::{LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, is_none, least, span};
 use gz_core::simd::{Lanes, Simd};
 
 /// A cell still to be visited.
@@ -77,7 +77,7 @@ impl Beam {
     #[inline(always)]
     fn of<S: Simd>(bundle: &RayBundle, slabs: &BundleSlabs, way: Way, company: &Rays) -> Self {
         let mut beam = Self { way, span: [[0.0; 4]; 3], tmin: least::<S>(&bundle.tmin, company) };
-        let inverse = extremes::<S>(&slabs.inverse, &slabs.inverse, company);
+        let inverse = span::<S>(&slabs.inverse, bundle.common_direction, company);
         let [leave, enter] = extremes::<S>(&slabs.leave, &slabs.enter, company);
         for axis in 0..3 {
             beam.span[axis] = [inverse[0][axis], inverse[1][axis], enter[axis], leave[axis]];

@@ -78,7 +78,7 @@ pub struct RayBundle {
     /// All origins are the centre.
     pub(super) common_origin: bool,
     /// All directions are equal.
-    pub(super) common_direction: bool,
+    pub common_direction: bool,
     /// The rays that the f32 kernels take, and the least and greatest of their directions.
     pub(super) fit: Rays,
     pub(super) span: [[f32; 3]; 2],
@@ -246,10 +246,7 @@ impl RayBundle {
         let zero = <S::Sixteen>::splat(0.0);
         let mut spread = zero;
         // The greatest of each component rather than of their sums: that is what `spans.rs` needs.
-        let [low, high] = match self.common_direction {
-            true => [[self.direction[0][0][0], self.direction[1][0][0], self.direction[2][0][0]]; 2],
-            false => extremes::<S>(&self.direction, &self.direction, fit),
-        };
+        let [low, high] = span::<S>(&self.direction, self.common_direction, fit);
         (self.fit, self.span) = (*fit, [low, high]);
         let size = low[0].abs().max(high[0].abs()) + low[1].abs().max(high[1].abs()) + low[2].abs().max(high[2].abs());
         let size = size * (1.0 + 2.0 * f32::EPSILON);
@@ -424,6 +421,12 @@ pub fn extremes<S: Simd>(low: &[Each; 3], high: &[Each; 3], rays: &Rays) -> [[f3
     let [x, y, z, a] = <S::Sixteen>::least_of_each([least[0], least[1], least[2], least[3]]);
     let [b, c, ..] = <S::Sixteen>::least_of_each([least[4], least[5], least[5], least[5]]);
     [[x, y, z], [-a, -b, -c]]
+}
+
+/// The same of three numbers, `common` to all rays of the bundle or not.
+#[inline(always)]
+pub fn span<S: Simd>(each: &[Each; 3], common: bool, rays: &Rays) -> [[f32; 3]; 2] {
+    if common { [[each[0][0][0], each[1][0][0], each[2][0][0]]; 2] } else { extremes::<S>(each, each, rays) }
 }
 
 /// Three numbers of a packet's rays.

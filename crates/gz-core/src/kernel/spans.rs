@@ -16,7 +16,7 @@
 // Axes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::bundle::{RayBundle, Rays, extremes};
+use super::bundle::{RayBundle, Rays, span};
 use crate::simd::{Lanes, Simd};
 
 const E: f32 = f32::EPSILON / 2.0;
@@ -51,9 +51,9 @@ impl Spans {
     pub fn of<S: Simd>(bundle: &RayBundle, company: &Rays) -> Self {
         let mut spans = Self::default();
         let known = bundle.common_direction || *company == bundle.fit;
-        spans.direction = between(if known { bundle.span } else { extremes::<S>(&bundle.direction, &bundle.direction, company) });
+        spans.direction = between(if known { bundle.span } else { span::<S>(&bundle.direction, false, company) });
         if !bundle.common_origin {
-            spans.moment = between(extremes::<S>(&bundle.moment, &bundle.moment, company));
+            spans.moment = between(span::<S>(&bundle.moment, false, company));
         }
         spans
     }
