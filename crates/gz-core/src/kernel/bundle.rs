@@ -144,9 +144,9 @@ impl RayBundle {
                     None => self.leaves[p][..len].copy_from_slice(&leaves[from..from + len]),
                 }
             }
-            *fit = self.fit::<S::Sixteen>(p, space.reach) & ((1u32 << len) - 1);
-            // The least origins cannot be told from 0 in f32.
-            tiny |= self.tiny::<S::Sixteen>(p) & *fit;
+            let (whole, near_zero) = self.fit::<S::Sixteen>(p, space.reach);
+            *fit = whole & ((1u32 << len) - 1);
+            tiny |= near_zero & *fit;
         }
         if tiny != 0 {
             drop_invalid(&mut fit, rays, from);
@@ -214,30 +214,19 @@ impl RayBundle {
         }
     }
 
-    /// Rays that are valid, but for origins near 0, and within the range of the bounds.
+    /// Rays that are valid, but for origins near 0, and within the range of the bounds; and those with an origin so near 0 along an axis that
+    /// f32 does not tell whether it is.
     #[inline(always)]
-    fn fit<L: Lanes<LANES>>(&self, p: usize, reach: GzCoord) -> u32 {
+    fn fit<L: Lanes<LANES>>(&self, p: usize, reach: GzCoord) -> (u32, u32) {
+        let ([x, y, z], [a, b, c]) = (abs3::<L>(packet_of(&self.origin, p)), abs3::<L>(packet_of(&self.direction, p)));
         let limit = L::splat(GREATEST_REACH - reach.max_element());
-        let fast = L::splat(GREATEST_DIRECTION);
-        let mut fit = L::load(&self.tmin[p]).below(L::load(&self.limit[p]));
-        let mut largest = L::splat(0.0);
-        for axis in 0..3 {
-            let direction = L::load(&self.direction[axis][p]).abs();
-            fit &= L::load(&self.origin[axis][p]).abs().at_most(limit) & direction.at_most(fast);
-            largest = largest.max(direction);
-        }
-        fit & L::splat(1.0 / GREATEST_DIRECTION).at_most(largest)
-    }
-
-    /// Rays with an origin so near 0 along an axis that f32 does not tell whether it is.
-    #[inline(always)]
-    fn tiny<L: Lanes<LANES>>(&self, p: usize) -> u32 {
-        let mut tiny = 0;
-        for axis in 0..3 {
-            let least = L::splat(f32::MIN_POSITIVE * self.scale[axis]);
-            tiny |= L::load(&self.origin[axis][p]).abs().below(least);
-        }
-        tiny
+        // Sums, as a maximum may lose what is not a number.
+        let fit = L::load(&self.tmin[p]).below(L::load(&self.limit[p]))
+            & x.plus(y).plus(z).at_most(limit)
+            & a.plus(b).plus(c).at_most(L::splat(GREATEST_DIRECTION))
+            & L::splat(1.0 / GREATEST_DIRECTION).at_most(a.max(b).max(c));
+        let greatest_scale = self.scale[0].max(self.scale[1]).max(self.scale[2]);
+        (fit, x.min(y).min(z).below(L::splat(f32::MIN_POSITIVE * greatest_scale)))
     }
 
     /// Chooses the centre and forms what depends on it; only the rays of `fit` matter.
@@ -427,6 +416,11 @@ pub fn extremes<S: Simd>(low: &[Each; 3], high: &[Each; 3], rays: &Rays) -> [[f3
 #[inline(always)]
 pub fn span<S: Simd>(each: &[Each; 3], common: bool, rays: &Rays) -> [[f32; 3]; 2] {
     if common { [[each[0][0][0], each[1][0][0], each[2][0][0]]; 2] } else { extremes::<S>(each, each, rays) }
+}
+
+#[inline(always)]
+fn abs3<L: Lanes<LANES>>([x, y, z]: [L; 3]) -> [L; 3] {
+    [x.abs(), y.abs(), z.abs()]
 }
 
 /// Three numbers of a packet's rays.
