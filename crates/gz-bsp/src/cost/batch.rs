@@ -4,8 +4,8 @@
 
 use super::abreast::Abreast;
 use super::quest::{AnyOf, BundleQuest, ClosestOf};
+use super::queue::Queue;
 use super::slabs::BundleSlabs;
-use super::together::Queue;
 use super::walk::{Blocked, NearestOf, Stack};
 use super::wide::BspTree;
 use crate::Visits;

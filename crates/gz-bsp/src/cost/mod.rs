@@ -13,6 +13,7 @@ mod forest;
 #[cfg(feature = "plain-f32")]
 mod plain_f32;
 mod quest;
+mod queue;
 mod slabs;
 mod split;
 mod stats;
