@@ -18,8 +18,17 @@ use gz_core::{ClassMask, GzRay, Hit, Passages, PerRay, RayBatch, RayQuery, Targe
 use std::cell::Cell;
 use std::ops::{Deref, DerefMut};
 
-/// Rays that go the same way go together from this number on.
-const COMPANY: u32 = 16;
+/// Rays that go the same way go together from this number on ...
+const COMPANY: u32 = 8;
+/// ... when so many are in each packet that has any, in the mean.
+const DENSE: u32 = 5;
+
+/// Whether rays are enough to go together.
+#[inline(always)]
+fn are_enough(rays: &Rays) -> bool {
+    let packets = rays.iter().fold(0, |packets, &packet| packets + u32::from(packet != 0));
+    count(rays) >= COMPANY.max(DENSE * packets)
+}
 
 /// Part `i` of a company: all of it, and then each packet, as neighbours may go together where not all do.
 #[inline(always)]
@@ -240,7 +249,7 @@ impl BspTree<'_> {
             let parts = if company[p].count_ones() == count(&company) { 1 } else { 1 + PACKETS };
             for i in 0..parts {
                 let part = part(&company, i);
-                if count(&part) >= COMPANY && self.send_together::<S, _>(slabs, way, &part, queue, abreast, &mut quest) {
+                if are_enough(&part) && self.send_together::<S, _>(slabs, way, &part, queue, abreast, &mut quest) {
                     take_out(&part, &mut company);
                     if is_none(&company) {
                         break;
