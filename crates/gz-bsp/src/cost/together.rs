@@ -12,18 +12,15 @@ use super::abreast::Abreast;
 use super::quest::BundleQuest;
 use super::queue::{Queue, Visit};
 use super::slabs::BundleSlabs;
-use super::wide::{BspTree, Child, Target, WIDTH, Way, WideNode};
+use super::wide::{BspTree, Child, Target, Way, WideNode};
 use gz_core::kernel::{LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, is_none, least, span};
 use gz_core::simd::{Lanes, Simd};
 
 /// Fewer rays than this go on by themselves, when all others are done.
 const FEW: u32 = 5;
 /// Rays of several packets go together when two samples of them have at least this share, in percent, of those of the root's cells in common
-/// that either crosses ...
+/// that either crosses. Those of one packet always do: their boxes cost one step of lanes each.
 const ALIKE: u32 = 30;
-/// ... and, where that is not all, when they cross at least this share of the cells that their interval crosses. Those of one packet always go
-/// together: their boxes cost one step of lanes each.
-const TOGETHER: u32 = 6;
 
 /// What the rays of `company` span: least and greatest reciprocal, last entry and first exit constant, by axis.
 struct Beam {
@@ -106,7 +103,7 @@ fn crossing<L: Lanes<LANES>>(
 
 impl BspTree<'_> {
     /// Sends the rays of `company`, which go the same way along each axis as `way` says; gives up, before anything is tested, when they
-    /// part at the root.
+    /// seem to part at the root.
     #[inline(always)]
     pub(super) fn send_together<S: Simd, Q: BundleQuest>(
         &self,
@@ -117,8 +114,7 @@ impl BspTree<'_> {
         abreast: &mut Abreast,
         quest: &mut Q,
     ) -> bool {
-        let alike = self.likeness::<S>(slabs, company, quest.bundle());
-        if alike < ALIKE {
+        if !self.seem_together::<S>(slabs, company, quest.bundle()) {
             return false;
         }
         let beam = Beam::of::<S>(quest.bundle(), slabs, way, company);
@@ -135,18 +131,7 @@ impl BspTree<'_> {
             let (entries, crossed) = beam.cross::<S::Eight>(node, greatest_limit);
             queue.push(at, &active, entries, crossed);
             if at == 0 {
-                if alike < 100 {
-                    let (mut crossings, mut left, mut of_cell) = (0, crossed, [0; PACKETS]);
-                    while left != 0 {
-                        let ends = beam.ends::<S::Sixteen>(node, left.trailing_zeros() as usize % WIDTH);
-                        left &= left - 1;
-                        crossing(quest.bundle(), slabs, &ends, [company, company], &mut of_cell);
-                        crossings += count(&of_cell);
-                    }
-                    if crossings * 100 < count(company) * crossed.count_ones() * TOGETHER {
-                        return false;
-                    }
-                }
+                // Only now, as what comes first is waited for.
                 spans = Spans::of::<S>(quest.bundle(), company);
             }
             at = loop {
@@ -194,19 +179,19 @@ impl BspTree<'_> {
         }
     }
 
-    /// Of the root's cells that a ray of the first packet or one of the last crosses, the share in percent that both do: measuring all rays
-    /// costs more than it saves where they go everywhere.
+    /// Whether a ray of the first packet and one of the last cross about the same of the root's cells: measuring all rays costs more than it
+    /// saves.
     #[inline(always)]
-    fn likeness<S: Simd>(&self, slabs: &BundleSlabs, company: &Rays, bundle: &RayBundle) -> u32 {
+    fn seem_together<S: Simd>(&self, slabs: &BundleSlabs, company: &Rays, bundle: &RayBundle) -> bool {
         let [Some(first), Some(last)] = [(0..PACKETS).find(|&p| company[p] != 0), (0..PACKETS).rfind(|&p| company[p] != 0)]
         else {
-            return 0;
+            return false;
         };
         if first == last {
-            return 100;
+            return true;
         }
         let (one, other) = (self.sample::<S>(slabs, company, bundle, first), self.sample::<S>(slabs, company, bundle, last));
-        if one == other { 100 } else { (one & other).count_ones() * 100 / (one | other).count_ones() }
+        (one & other).count_ones() * 100 >= (one | other).count_ones() * ALIKE
     }
 
     /// The root's cells that the first ray of a packet's company crosses.
