@@ -56,7 +56,7 @@ const ALLOWED: [(&str, &str); 37] = [
     ("abreast::Alone", "a task by itself, read like this one"),
     ("abreast::Abreast::send", "one ray by itself, set up for its walk"),
     ("abreast::Abreast::leave", "one ray by itself, set up for its walk"),
-    ("together::Queue::grow", "cold: the queue is full"),
+    ("queue::Queue::grow", "cold: the queue is full"),
     ("alloc::raw_vec", "a list is full"),
     ("passage::GoingThrough::sort", "once a bundle, where rays meet something"),
     ("passage::in_order", "once a bundle, where rays meet something"),

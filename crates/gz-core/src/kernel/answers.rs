@@ -60,8 +60,17 @@ impl RayBundle {
 
     #[inline(always)]
     fn hits_of_few<S: Simd>(&self, few: &Few, rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], hits: &mut [Hit]) {
-        let t = few.tris.map(|tri| &positions[tri as usize]);
-        let [a, b, c] = corners_of::<S>(&t);
+        let [t0, t1, t2, t3, t4, t5, t6, t7] = few.tris;
+        let [a, b, c] = corners_of::<S>(&[
+            &positions[t0 as usize],
+            &positions[t1 as usize],
+            &positions[t2 as usize],
+            &positions[t3 as usize],
+            &positions[t4 as usize],
+            &positions[t5 as usize],
+            &positions[t6 as usize],
+            &positions[t7 as usize],
+        ]);
         let facing = Facing::of(self.exact_origins::<S>(0, 0), &[widen3::<S>(a), widen3::<S>(b), widen3::<S>(c)]);
         let table = Table::of(&facing);
         for (k, hits) in hits.chunks_mut(8).enumerate() {
@@ -148,5 +157,73 @@ impl Table {
             size: D::pick(size, places),
             away: D::pick(away, places),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{BUNDLE, FilterSpace, Spans, TriGroup};
+    use super::*;
+    use crate::simd::{SimdLevel, Task, dispatch};
+    use crate::{BruteForce, ClassMask, PerRay, RayQuery, Targets, TriBuffer};
+    use glam::DVec3;
+
+    /// The hits of a bundle, and whether its triangles were few.
+    struct Ask<'a>(&'a RayBatch<'a>, &'a TriBuffer);
+
+    impl Task for Ask<'_> {
+        type Output = (Vec<Hit>, bool);
+
+        #[inline(always)]
+        fn run<S: Simd>(self) -> Self::Output {
+            let Self(rays, tris) = self;
+            let (space, targets) = (FilterSpace::new(tris.bounds().reaches()), Targets::new(tris, ClassMask::ALL));
+            let mut bundle = RayBundle::empty();
+            let company = bundle.gather::<S>(rays, 0, rays.len(), &space);
+            let spans = Spans::of::<S>(&bundle, &company);
+            let ids: Vec<TriId> = (0..tris.len() as u32).collect();
+            for ids in ids.chunks(8) {
+                let group = TriGroup::new(ids, tris.positions(), &space);
+                bundle.closest::<S>(rays, &group, &company, &spans, &targets);
+            }
+            let mut hits = vec![Hit::MISS; rays.len()];
+            bundle.hits::<S>(rays, tris.positions(), &mut hits);
+            (hits, bundle.few::<S>().is_some())
+        }
+    }
+
+    /// A fan of slices of a square, more or less tilted, before the eye.
+    fn fan(slices: usize) -> TriBuffer {
+        let corner = |k: usize| {
+            let (along, tilt) = (2.0 * k as f32 / slices as f32 - 1.0, 0.1 * (k % 3) as f32);
+            [GzCoord::new(along, -1.0, 3.0 + tilt), GzCoord::new(along, 1.0, 3.0 - tilt)]
+        };
+        let corners: Vec<_> = (0..=slices).flat_map(corner).collect();
+        let faces: Vec<_> = (0..slices as u32).map(|k| [2 * k, 2 * k + 1, 2 * k + 3]).collect();
+        TriBuffer::from_indexed(&corners, &faces).unwrap()
+    }
+
+    #[test]
+    fn rays_from_one_origin_get_the_bits_of_one_ray_whether_their_triangles_are_few_or_not() {
+        let (mut few, mut many) = (0, 0);
+        for slices in 1..=12 {
+            let tris = fan(slices);
+            let brute = BruteForce::new(&tris);
+            for len in [1, 7, 8, 9, 33, BUNDLE] {
+                let at = |k: usize| GzCoord::new((k % 8) as f32 / 4.0 - 0.9, (k / 8) as f32 / 4.0 - 1.1, 3.0);
+                let directions: Vec<_> = (0..len).map(at).collect();
+                let origin = DVec3::new(0.01, -0.02, 1e-3 / 3.0);
+                let rays = RayBatch::unbounded(len, PerRay::One(origin), PerRay::Each(&directions));
+                let truth: Vec<_> = (0..len).map(|k| brute.closest_hit(&rays.ray(k))).collect();
+                assert!(truth.iter().any(Hit::is_hit) || len < BUNDLE, "{slices} slices");
+                for &level in SimdLevel::available() {
+                    let (hits, are_few) = dispatch(level, Ask(&rays, &tris));
+                    assert_eq!(hits, truth, "{level:?}, {slices} slices, {len} rays");
+                    few += u32::from(are_few);
+                    many += u32::from(!are_few);
+                }
+            }
+        }
+        assert!(few > 30 && many > 3, "{few} few, {many} not");
     }
 }
