@@ -10,7 +10,7 @@ use super::walk::{Blocked, NearestOf, Stack};
 use super::wide::BspTree;
 use crate::Visits;
 use gz_core::kernel::{
-    Asked, BUNDLE, GoingThrough, LANES, Nearest, OnHit, PACKETS, RayBundle, Rays, Stopped, count, first, is_none,
+    Asked, BUNDLE, GoingThrough, LANES, Nearest, OnHit, PACKETS, RayBundle, Rays, Stopped, count, first, is_none, packets,
 };
 use gz_core::simd::{Simd, Task, dispatch};
 use gz_core::{ClassMask, GzRay, Hit, Passages, PerRay, RayBatch, RayQuery, Targets, TriBuffer, with_default_float_control};
@@ -26,8 +26,7 @@ const DENSE: u32 = 5;
 /// Whether rays are enough to go together.
 #[inline(always)]
 fn are_enough(rays: &Rays) -> bool {
-    let packets = rays.iter().fold(0, |packets, &packet| packets + u32::from(packet != 0));
-    count(rays) >= COMPANY.max(DENSE * packets)
+    count(rays) >= COMPANY.max(DENSE * packets(rays))
 }
 
 /// Part `i` of a company: all of it, and then each packet, as neighbours may go together where not all do.

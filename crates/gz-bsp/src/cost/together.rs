@@ -13,11 +13,14 @@ use super::quest::BundleQuest;
 use super::queue::{Queue, Visit};
 use super::slabs::BundleSlabs;
 use super::wide::{BspTree, Child, Target, Way, WideNode};
-use gz_core::kernel::{LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, is_none, least, span};
+use gz_core::kernel::{LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, is_none, least, packets, span};
 use gz_core::simd::{Lanes, Simd};
 
-/// Fewer rays than this go on by themselves, when all others are done.
+/// Fewer rays than this go on by themselves, when all others are done ...
 const FEW: u32 = 5;
+/// ... and so do those that look for their front-most hits from here and there, when fewer than this are in each packet that has any, in the
+/// mean.
+const SPARSE: u32 = 4;
 /// Rays of several packets go together when two samples of them have at least this share, in percent, of those of the root's cells in common
 /// that either crosses. Those of one packet always do: their boxes cost one step of lanes each.
 const ALIKE: u32 = 30;
@@ -125,6 +128,7 @@ impl BspTree<'_> {
         // Rays whose quest is not over, and those of them that cross the node.
         let (mut live, mut active) = (*company, *company);
         queue.clear();
+        let each = if Q::ORDERED && !quest.bundle().common_origin { SPARSE } else { 0 };
         let mut at = 0;
         loop {
             let node = &self.nodes[at];
@@ -147,7 +151,7 @@ impl BspTree<'_> {
                 let child = node.children[slot];
                 match child.target() {
                     Target::Node(index) => {
-                        if count(&active) >= FEW {
+                        if count(&active) >= FEW.max(each * packets(&active)) {
                             break index;
                         }
                         active = leave_few(&ends, child, &active, slabs, abreast, quest);

@@ -32,6 +32,12 @@ pub fn count(rays: &Rays) -> u32 {
     rays.iter().map(|packet| packet.count_ones()).sum()
 }
 
+/// The packets in which a set has rays.
+#[inline(always)]
+pub fn packets(rays: &Rays) -> u32 {
+    rays.iter().fold(0, |packets, &packet| packets + u32::from(packet != 0))
+}
+
 /// The first ray of a set.
 #[inline(always)]
 pub fn first(rays: &Rays) -> Option<(usize, usize)> {
@@ -76,7 +82,7 @@ pub struct RayBundle {
     /// For a ray by itself, from its own origin, rounded.
     alone: Margin,
     /// All origins are the centre.
-    pub(super) common_origin: bool,
+    pub common_origin: bool,
     /// All directions are equal.
     pub common_direction: bool,
     /// The rays that the f32 kernels take, and the least and greatest of their directions.

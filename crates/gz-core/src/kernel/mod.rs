@@ -30,7 +30,9 @@ mod woop;
 
 pub(crate) use answer::point_at;
 pub use answer::{answer_rung, hit_weights};
-pub use bundle::{BUNDLE, Each, LANES, PACKETS, RayBundle, Rays, Row, count, extremes, first, greatest, is_none, least, span};
+pub use bundle::{
+    BUNDLE, Each, LANES, PACKETS, RayBundle, Rays, Row, count, extremes, first, greatest, is_none, least, packets, span,
+};
 pub(crate) use departure::FindPoints;
 pub(crate) use exact::side_sign;
 pub use filter::FilterRay;
