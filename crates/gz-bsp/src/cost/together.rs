@@ -12,7 +12,7 @@ use super::abreast::Abreast;
 use super::quest::BundleQuest;
 use super::queue::{Queue, Visit};
 use super::slabs::BundleSlabs;
-use super::wide::{BspTree, Child, Target, Way, WideNode};
+use super::wide::{BspTree, Child, Target, WIDTH, Way, WideNode};
 use gz_core::kernel::{LANES, PACKETS, RayBundle, Rays, Spans, count, extremes, greatest, is_none, least, packets, span};
 use gz_core::simd::{Lanes, Simd};
 
@@ -21,6 +21,8 @@ const FEW: u32 = 5;
 /// ... and so do those that look for their front-most hits from here and there, when fewer than this are in each packet that has any, in the
 /// mean.
 const SPARSE: u32 = 4;
+/// A tree up to this size, in bytes, is not asked for ahead: it costs more than it saves where most of it is in the cache of a core.
+const NEAR_BYTES: usize = 8 << 20;
 /// Rays of several packets go together when two samples of them have at least this share, in percent, of those of the root's cells in common
 /// that either crosses. Those of one packet always do: their boxes cost one step of lanes each.
 const ALIKE: u32 = 30;
@@ -129,11 +131,17 @@ impl BspTree<'_> {
         let (mut live, mut active) = (*company, *company);
         queue.clear();
         let each = if Q::ORDERED && !quest.bundle().common_origin { SPARSE } else { 0 };
+        let is_far = self.bytes() > NEAR_BYTES;
         let mut at = 0;
         loop {
             let node = &self.nodes[at];
             let (entries, crossed) = beam.cross::<S::Eight>(node, greatest_limit);
             queue.push(at, &active, entries, crossed);
+            let mut coming = if is_far { crossed } else { 0 };
+            while coming != 0 {
+                self.prefetch::<S>(node.children[coming.trailing_zeros() as usize % WIDTH]);
+                coming &= coming - 1;
+            }
             if at == 0 {
                 // Only now, as what comes first is waited for.
                 spans = Spans::of::<S>(quest.bundle(), company);
