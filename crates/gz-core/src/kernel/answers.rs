@@ -6,7 +6,8 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::answer::{EightPairs, alone, corners_of, widen3, write_settled};
-use super::bundle::{LANES, PACKETS, RayBundle, count, eight, first, is_none};
+use super::bundle::RayBundle;
+use super::packets::{LANES, PACKETS, count, eight, first, is_none};
 use super::plain_f32::plain_hits;
 use super::solution::Facing;
 use crate::simd::{EightDoubles, Lanes, Simd};

@@ -15,6 +15,7 @@ mod leaving;
 mod moeller_trumbore;
 mod nearest;
 mod order;
+mod packets;
 mod passage;
 mod plain;
 mod plain_f32;
@@ -30,9 +31,7 @@ mod woop;
 
 pub(crate) use answer::point_at;
 pub use answer::{answer_rung, hit_weights};
-pub use bundle::{
-    BUNDLE, Each, LANES, PACKETS, RayBundle, Rays, Row, count, extremes, first, greatest, is_none, least, packets, span,
-};
+pub use bundle::RayBundle;
 pub(crate) use departure::FindPoints;
 pub(crate) use exact::side_sign;
 pub use filter::FilterRay;
@@ -41,6 +40,7 @@ pub(crate) use height::Plane;
 pub(crate) use leaving::{Leaving, without_tiny};
 pub use nearest::{Asked, Nearest};
 pub use order::{Closest, is_hit};
+pub use packets::{BUNDLE, Each, LANES, PACKETS, Rays, Row, count, extremes, first, greatest, is_none, least, packets, span};
 pub use passage::{GoingThrough, OnHit, Stopped};
 pub use plain::plain;
 pub use plain_f32::InPlainF32;

@@ -3,8 +3,8 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::answer::EightPairs;
-use super::bundle::{BUNDLE, LANES, Rays};
 use super::order::{closer, is_hit};
+use super::packets::{BUNDLE, LANES, Rays};
 use crate::simd::Simd;
 use crate::{ClassMask, GzCoord, GzRay, Hit, RayBatch, Targets, TriId};
 

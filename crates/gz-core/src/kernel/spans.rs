@@ -16,7 +16,8 @@
 // Axes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::bundle::{RayBundle, Rays, span};
+use super::bundle::RayBundle;
+use super::packets::{Rays, span};
 use crate::simd::{Lanes, Simd};
 
 const E: f32 = f32::EPSILON / 2.0;

@@ -2,11 +2,12 @@
 // Packets, axes and lanes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::bundle::{LANES, PACKETS, RayBundle, Rays, is_none, packet_of};
+use super::bundle::RayBundle;
 use super::filter::{Judged, distance, judge};
 use super::group::{TriGroup, cross, dot, minus3};
 use super::nearest::Asked;
 use super::order::is_hit;
+use super::packets::{LANES, PACKETS, Rays, is_none, packet_of};
 use super::passage::OnHit;
 use super::plain_f32::plain_distance;
 use super::spans::{BOUND, Spans};
