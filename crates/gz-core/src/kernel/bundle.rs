@@ -82,7 +82,7 @@ impl RayBundle {
         }
     }
 
-    /// Takes rays `from..from + len` of a batch, 1 to [`BUNDLE`], and tells which of them the f32 kernels can take, for triangles in
+    /// Takes rays `from..from + len` of a batch, 1 to [`super::BUNDLE`], and tells which of them the f32 kernels can take, for triangles in
     /// `space`.
     #[inline(always)]
     pub fn gather<S: Simd>(&mut self, rays: &RayBatch<'_>, from: usize, len: usize, space: &FilterSpace) -> Rays {
