@@ -102,25 +102,32 @@ impl<'p, S: Simd> EightPairs<'p, S> {
     #[inline(always)]
     pub(super) fn hits(&self, hit: u32, ids: &[TriId; 8], ray: impl Fn(usize) -> GzRay, hits: &mut [Hit]) {
         let solution = Solution::quick(self.origin, self.direction, &self.wide_corners());
-        let mut open = write_settled::<S>(&solution, hit, ids, hits);
-        while open != 0 {
-            let lane = open.trailing_zeros() as usize;
-            open &= open - 1;
-            hits[lane] = alone(&ray(lane), ids[lane], self.corners[lane]);
-        }
+        write_answers::<S>(&solution, hit, ids, |lane| (ray(lane), self.corners[lane]), hits);
     }
 }
 
-/// [`EightPairs::hits`] from their quick solution; gives the lanes that it leaves open.
+/// [`EightPairs::hits`] from their quick solution; `pair` gives the ray and the triangle of a lane that it leaves open.
 #[inline(always)]
-pub(super) fn write_settled<S: Simd>(solution: &Solution<S::Doubles>, hit: u32, ids: &[TriId; 8], hits: &mut [Hit]) -> u32 {
+pub(super) fn write_answers<'p, S: Simd>(
+    solution: &Solution<S::Doubles>,
+    hit: u32,
+    ids: &[TriId; 8],
+    pair: impl Fn(usize) -> (GzRay, &'p [GzCoord; 3]),
+    hits: &mut [Hit],
+) {
     let found = InDoubles::of(solution);
     let [lo, hi] = [found.t[0], found.t[1]];
     let (lo, hi, v, w) = (S::narrow(lo), S::narrow(hi), S::narrow(found.v), S::narrow(found.w));
     let zero = <S::Doubles>::splat(0.0);
     let settled = lo.same_bits(hi) & !found.certainty.at_most(zero) & zero.at_most(found.weights);
     write_hits::<S>(hit, ids, [lo, v, w], hits);
-    hit & !settled
+    let mut open = hit & !settled;
+    while open != 0 {
+        let lane = open.trailing_zeros() as usize;
+        open &= open - 1;
+        let (ray, corners) = pair(lane);
+        hits[lane] = alone(&ray, ids[lane], corners);
+    }
 }
 
 /// The corners of eight triangles, coordinate by coordinate.
@@ -154,7 +161,7 @@ pub(super) fn write_hits<S: Simd>(hit: u32, ids: &[TriId; 8], [t, u, v]: [S::Eig
 /// The hit of one ray and a triangle that are known to meet.
 #[cold]
 #[inline(never)]
-pub(super) fn alone(ray: &GzRay, tri: TriId, corners: &[GzCoord; 3]) -> Hit {
+fn alone(ray: &GzRay, tri: TriId, corners: &[GzCoord; 3]) -> Hit {
     let (t, u, v) = t_u_v(ray, corners);
     Hit { t, tri, u, v }
 }

@@ -5,7 +5,7 @@
 // Packets, axes and lanes are numbers into several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::answer::{EightPairs, alone, corners_of, widen3, write_settled};
+use super::answer::{EightPairs, corners_of, widen3, write_answers};
 use super::bundle::RayBundle;
 use super::packets::{LANES, PACKETS, count, eight, first, is_none};
 use super::plain_f32::plain_hits;
@@ -83,13 +83,9 @@ impl RayBundle {
             }
             let facing = table.look_up::<S::Doubles>(eight(&few.places[p], half));
             let tris = eight(&self.tris[p], half);
-            let mut open = write_settled::<S>(&facing.quick(self.exact_directions::<S>(p, half)), found, tris, hits);
-            while open != 0 {
-                let lane = open.trailing_zeros() as usize;
-                open &= open - 1;
-                let tri = tris[lane];
-                hits[lane] = alone(&rays.ray(self.place(p, 8 * half + lane)), tri, &positions[tri as usize]);
-            }
+            let solution = facing.quick(self.exact_directions::<S>(p, half));
+            let pair = |lane| (rays.ray(self.place(p, 8 * half + lane)), &positions[tris[lane] as usize]);
+            write_answers::<S>(&solution, found, tris, pair, hits);
         }
     }
 
