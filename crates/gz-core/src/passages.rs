@@ -8,12 +8,12 @@ use glam::DVec3;
 pub struct Passages {
     /// Whether each ray hits a triangle that does not let it through.
     pub blocked: Vec<bool>,
-    /// What the other rays meet among the triangles that do: the ray's number and the hit, ray by ray, each ray's in the order in which it
-    /// meets them.
+    /// What the other rays meet among the triangles that do: the ray's number and the triangle, ray by ray, each ray's in the order in which
+    /// it meets them.
     ///
-    /// The first is its front-most hit, the next is the front-most beyond the least f32 above the T-value of the one before, and so on. Of
+    /// The first is that of its front-most hit, the next is the front-most beyond the least f32 above the T-value of the one before, and so on. Of
     /// several within one step of f32, such as two walls that coincide or the two triangles of an edge that is hit, the first counts for all.
-    pub met: Vec<(u32, Hit)>,
+    pub met: Vec<(u32, TriId)>,
 }
 
 impl Passages {
@@ -60,7 +60,7 @@ impl Passages {
             // Rays that met something are asked about again behind it. The exact t rounds to hit.t, so it lies below the next f32: the
             // triangle is not met twice.
             for (k, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.is_hit()) {
-                met.push((part.numbers[k], *hit));
+                met.push((part.numbers[k], hit.tri));
                 part.tmin[k] = hit.t.next_up();
             }
             part.keep(|k| hits[k].is_hit());
@@ -69,7 +69,7 @@ impl Passages {
     }
 
     /// What ray `ray` meets, if it is not blocked.
-    pub fn of(&self, ray: u32) -> &[(u32, Hit)] {
+    pub fn of(&self, ray: u32) -> &[(u32, TriId)] {
         let first = self.met.partition_point(|&(other, _)| other < ray);
         let count = self.met[first..].partition_point(|&(other, _)| other == ray);
         &self.met[first..first + count]

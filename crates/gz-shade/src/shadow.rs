@@ -129,8 +129,8 @@ impl Shadows {
         // triangle of it and once more to learn that there is no other.
         let mut questions = self.passages.blocked.iter().filter(|&&blocked| blocked).count() as u64;
         let mut last = None;
-        for &(ray, hit) in &self.passages.met {
-            self.shares[ray as usize] *= scene.material(hit.tri).tint;
+        for &(ray, tri) in &self.passages.met {
+            self.shares[ray as usize] *= scene.material(tri).tint;
             questions += if last == Some(ray) { 1 } else { 3 };
             last = Some(ray);
         }

@@ -40,8 +40,11 @@ pub struct GoingThrough<'m> {
     /// Room for the same, by places in the bundle: the triangles of each, and each with its place.
     tris: Vec<TriId>,
     pairs: Vec<(u32, TriId)>,
+    /// Of the pairs those of rays that have several, and their hits.
+    several: Vec<(u32, TriId)>,
+    hits: Vec<Hit>,
     /// What the rays of bundles before met, as [`crate::Passages`] has it.
-    met: &'m mut Vec<(u32, Hit)>,
+    met: &'m mut Vec<(u32, TriId)>,
 }
 
 impl OnHit for GoingThrough<'_> {
@@ -60,23 +63,29 @@ impl OnHit for GoingThrough<'_> {
             return;
         }
         self.sort(blocked);
-        let first = self.met.len();
-        for pairs in self.pairs.chunks(8) {
-            let mut hits = [Hit::MISS; 8];
-            hits_of::<S>(rays, from, pairs, positions, &mut hits[..pairs.len()]);
-            for k in 0..pairs.len() {
-                self.met.push((from as u32 + pairs[k].0, hits[k]));
-            }
-        }
         self.found.clear();
-        in_order(rays, positions, self.met, first);
+        let Self { pairs, several, hits, met, .. } = self;
+        // A single one counts, wherever it lies.
+        several.clear();
+        several.extend(of_each_ray(pairs).filter(|of_ray| of_ray.len() > 1).flatten());
+        hits.clear();
+        hits.resize(several.len(), Hit::MISS);
+        for (pairs, hits) in several.chunks(8).zip(hits.chunks_mut(8)) {
+            hits_of::<S>(rays, from, pairs, positions, hits);
+        }
+        in_order(rays, from, positions, pairs, hits, met);
     }
+}
+
+/// The pairs of each ray.
+fn of_each_ray(pairs: &[(u32, TriId)]) -> impl Iterator<Item = &[(u32, TriId)]> {
+    pairs.chunk_by(|(place, _), (other, _)| place == other)
 }
 
 impl<'m> GoingThrough<'m> {
     /// Nothing met yet; what is goes to `met`.
-    pub fn new(through: ClassMask, met: &'m mut Vec<(u32, Hit)>) -> Self {
-        Self { through, found: Vec::new(), tris: Vec::new(), pairs: Vec::new(), met }
+    pub fn new(through: ClassMask, met: &'m mut Vec<(u32, TriId)>) -> Self {
+        Self { through, found: Vec::new(), tris: Vec::new(), pairs: Vec::new(), several: Vec::new(), hits: Vec::new(), met }
     }
 
     /// Makes pairs of what was found, in the order of their places, each once, without blocked rays. By counting: a ray has few.
@@ -140,37 +149,45 @@ fn hits_of<S: Simd>(rays: &RayBatch<'_>, from: usize, pairs: &[(u32, TriId)], po
     EightPairs::<S>::of(&origins, &directions, corners).hits(wanted, &ids, |lane| rays.ray(of[lane]), hits);
 }
 
-/// Puts the hits from number `first` on, which come ray by ray, in the order in which they are met, and drops those that do not count.
-fn in_order(rays: &RayBatch<'_>, positions: &[[GzCoord; 3]], met: &mut Vec<(u32, Hit)>, first: usize) {
-    for of_ray in met[first..].chunk_by_mut(|(ray, _), (other, _)| ray == other) {
-        of_ray.sort_unstable_by(|(_, hit), (_, other)| hit.t.total_cmp(&other.t));
-    }
-    let (mut kept, mut next) = (first, first);
-    while next < met.len() {
-        let (number, hit) = met[next];
-        let alike = met[next..].iter().take_while(|(ray, other)| *ray == number && other.t == hit.t).count();
-        // Behind the hit that counted last.
-        let behind = kept > first && met[kept - 1].0 == number;
-        let tmin = if behind { met[kept - 1].1.t.next_up() } else { rays.tmin.get(number as usize) };
-        // Most are by themselves, and surely there: a T-value that rounds to above tmin is above it.
-        let counts = if alike == 1 && hit.t > tmin {
-            Some(hit)
-        } else {
-            foremost(&GzRay { tmin, ..rays.ray(number as usize) }, &met[next..next + alike], positions)
-        };
-        if let Some(hit) = counts {
-            met[kept] = (number, hit);
-            kept += 1;
+/// Adds to `met` what each ray of `pairs` meets in the order in which it does, without what does not count; `hits` are those of rays that have
+/// several.
+fn in_order(
+    rays: &RayBatch<'_>,
+    from: usize,
+    positions: &[[GzCoord; 3]],
+    pairs: &[(u32, TriId)],
+    mut hits: &mut [Hit],
+    met: &mut Vec<(u32, TriId)>,
+) {
+    for of_ray in of_each_ray(pairs) {
+        let number = from as u32 + of_ray[0].0;
+        if let [(_, tri)] = of_ray {
+            met.push((number, *tri));
+            continue;
         }
-        next += alike;
+        let (own, others) = hits.split_at_mut(of_ray.len());
+        hits = others;
+        own.sort_unstable_by(|hit, other| hit.t.total_cmp(&other.t));
+        // Behind the hit that counted last.
+        let mut tmin = rays.tmin.get(number as usize);
+        for alike in own.chunk_by(|hit, other| hit.t == other.t) {
+            // Most are by themselves, and surely there: a T-value that rounds to above tmin is above it.
+            let counts = match alike {
+                [hit] if hit.t > tmin => Some(*hit),
+                _ => foremost(&GzRay { tmin, ..rays.ray(number as usize) }, alike, positions),
+            };
+            if let Some(hit) = counts {
+                met.push((number, hit.tri));
+                tmin = hit.t.next_up();
+            }
+        }
     }
-    met.truncate(kept);
 }
 
 /// Of hits whose T-values round alike the first that counts for `ray`.
-fn foremost(ray: &GzRay, alike: &[(u32, Hit)], positions: &[[GzCoord; 3]]) -> Option<Hit> {
+fn foremost(ray: &GzRay, alike: &[Hit], positions: &[[GzCoord; 3]]) -> Option<Hit> {
     let mut best: Option<Hit> = None;
-    for (_, hit) in alike {
+    for hit in alike {
         let counts = hit.t > ray.tmin || hit.t == ray.tmin && is_hit(ray, &positions[hit.tri as usize]);
         if counts && best.is_none_or(|best| closer(ray, Some(best.tri), hit.tri, positions).is_some()) {
             best = Some(*hit);
