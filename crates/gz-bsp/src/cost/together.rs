@@ -19,7 +19,7 @@ use gz_core::simd::{Lanes, Simd};
 /// Fewer rays than this go on by themselves, when all others are done ...
 const FEW: u32 = 5;
 /// ... and so do those that look for their front-most hits from here and there, when fewer than this are in each packet that has any, in the
-/// mean.
+/// mean. One more for each doubling of the tree beyond [`NEAR_BYTES`]: the more there still is below, the further they part.
 const SPARSE: u32 = 4;
 /// A tree up to this size, in bytes, is not asked for ahead: it costs more than it saves where most of it is in the cache of a core.
 const NEAR_BYTES: usize = 8 << 20;
@@ -130,8 +130,9 @@ impl BspTree<'_> {
         // Rays whose quest is not over, and those of them that cross the node.
         let (mut live, mut active) = (*company, *company);
         queue.clear();
-        let each = if Q::ORDERED && !quest.bundle().common_origin { SPARSE } else { 0 };
-        let is_far = self.bytes() > NEAR_BYTES;
+        let size = self.bytes() / NEAR_BYTES;
+        let (is_far, sparse) = (size > 0, SPARSE + usize::BITS - size.leading_zeros());
+        let each = if Q::ORDERED && !quest.bundle().common_origin { sparse } else { 0 };
         let mut at = 0;
         loop {
             let node = &self.nodes[at];
