@@ -89,7 +89,7 @@ impl Nearest {
 
     /// The same by f64 or exactly.
     pub fn settle(&mut self, ray: &GzRay, tri: TriId, positions: &[[GzCoord; 3]]) {
-        if let Some((lo, hi)) = closer(ray, self.found.then_some(self.tri), tri, positions) {
+        if let Some((lo, hi)) = closer(ray, self.found.then_some((self.tri, [self.lo, self.hi])), tri, positions) {
             *self = Self { lo, hi, tri, found: true, ..*self };
         }
     }

@@ -66,14 +66,23 @@ impl Closest {
     }
 }
 
-/// Whether triangle `tri` is hit by a valid ray before `best`, a triangle that it hits too; if so, an interval of f32 around its t.
-pub(crate) fn closer(ray: &GzRay, best: Option<TriId>, tri: TriId, positions: &[[GzCoord; 3]]) -> Option<(f32, f32)> {
+/// Whether triangle `tri` is hit by a valid ray before `best`, a triangle that it hits too, at t between two numbers; if so, an interval of
+/// f32 around its t.
+pub(crate) fn closer(ray: &GzRay, best: Option<(TriId, [f32; 2])>, tri: TriId, positions: &[[GzCoord; 3]]) -> Option<(f32, f32)> {
     let mut closest = Closest::default();
-    if let Some(best) = best {
-        closest.consider(ray, best, positions);
-    }
     closest.consider(ray, tri, positions);
-    closest.best.filter(|best| best.tri == tri).map(|Candidate { lo, hi, .. }| ((lo as f32).next_down(), (hi as f32).next_up()))
+    let Candidate { lo, hi, .. } = closest.best?;
+    if let Some((best, [best_lo, best_hi])) = best {
+        if lo > f64::from(best_hi) {
+            return None;
+        }
+        // Most are told apart by what is known of the other.
+        if hi >= f64::from(best_lo) {
+            closest.consider(ray, best, positions);
+            closest.best.filter(|best| best.tri == tri)?;
+        }
+    }
+    Some(((lo as f32).next_down(), (hi as f32).next_up()))
 }
 
 /// Whether a valid ray hits a triangle.

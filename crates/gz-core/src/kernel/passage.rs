@@ -189,7 +189,8 @@ fn foremost(ray: &GzRay, alike: &[Hit], positions: &[[GzCoord; 3]]) -> Option<Hi
     let mut best: Option<Hit> = None;
     for hit in alike {
         let counts = hit.t > ray.tmin || hit.t == ray.tmin && is_hit(ray, &positions[hit.tri as usize]);
-        if counts && best.is_none_or(|best| closer(ray, Some(best.tri), hit.tri, positions).is_some()) {
+        let about = [hit.t.next_down(), hit.t.next_up()];
+        if counts && best.is_none_or(|best| closer(ray, Some((best.tri, about)), hit.tri, positions).is_some()) {
             best = Some(*hit);
         }
     }
