@@ -34,7 +34,8 @@ impl Task for FindPoints<'_> {
         let pairs = EightPairs::<S>::of(self.origins, self.directions, *self.corners);
         let corners = pairs.wide_corners();
 
-        let solution = Solution::of(pairs.origin, pairs.direction, &corners);
+        // Errors that are quickly had do: about what they leave open one hit at a time is asked.
+        let solution = Solution::quick(pairs.origin, pairs.direction, &corners);
         let NearWeights { weights, certainty, error } = NearWeights::of(&solution);
         let zero = <S::Doubles>::splat(0.0);
         let mut settled = !certainty.at_most(zero) & error.at_most(<S::Doubles>::splat(WEIGHT_ERROR));
