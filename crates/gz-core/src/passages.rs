@@ -1,5 +1,6 @@
 //! Rays that some triangles let through: what they meet on their way, and whether something stops them.
 
+use crate::query::Given;
 use crate::{ClassMask, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TriId};
 use glam::DVec3;
 
@@ -120,9 +121,11 @@ impl Part {
 
     /// What all rays of `rays` have in common these have too.
     fn batch<'a>(&'a self, rays: &RayBatch<'a>) -> RayBatch<'a> {
-        let origin = if let PerRay::One(_) = rays.origin { rays.origin } else { PerRay::Each(&self.origins[..]) };
-        let direction = if let PerRay::One(_) = rays.direction { rays.direction } else { PerRay::Each(&self.directions[..]) };
-        let tmax = if let PerRay::One(_) = rays.tmax { rays.tmax } else { PerRay::Each(&self.tmax[..]) };
+        let (mut origin, mut direction) = (PerRay::Each(&self.origins[..]), PerRay::Each(&self.directions[..]));
+        let mut tmax = PerRay::Each(&self.tmax[..]);
+        if let Given::Properties { origin: all, direction: along, tmax: ends, .. } = rays.given {
+            (origin, direction, tmax) = (all.or(origin), along.or(direction), ends.or(tmax));
+        }
         let batch = RayBatch::new(self.numbers.len(), origin, direction, PerRay::Each(&self.tmin), tmax);
         if rays.leaves.is_some() { batch.leaving(&self.leaves) } else { batch }
     }

@@ -1,6 +1,6 @@
 //! The one question that everything above asks, in batches.
 
-use crate::{GzCoord, GzRay, Hit, NO_TRI, Passages, TriBuffer, TriClass, TriId};
+use crate::{GzCoord, GzRay, GzRay32, Hit, NO_TRI, Passages, TriBuffer, TriClass, TriId};
 use glam::DVec3;
 
 /// A property of the rays of a batch: the same for all, or one each.
@@ -14,13 +14,23 @@ pub enum PerRay<'a, T> {
     Each(&'a [T]),
 }
 
-impl<T: Copy> PerRay<'_, T> {
+impl<'a, T: Copy> PerRay<'a, T> {
     /// The value of ray `i`.
     pub fn get(&self, i: usize) -> T {
         match *self {
             Self::One(value) => value,
             Self::Each(values) => values[i],
         }
+    }
+
+    /// Whether all rays have one value.
+    pub(crate) fn is_one(&self) -> bool {
+        matches!(self, Self::One(_))
+    }
+
+    /// The value that all rays have, else what `other` says.
+    pub(crate) fn or(self, other: Self) -> Self {
+        if let Self::One(_) = self { self } else { other }
     }
 
     /// The length that this property forces on a batch, if any.
@@ -32,25 +42,28 @@ impl<T: Copy> PerRay<'_, T> {
     }
 }
 
-/// Rays asked about together, property by property: see [`GzRay`] for what each means.
+/// Rays as they are given: property by property, or ray by ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Given<'a> {
+    /// See [`GzRay`] for what each means.
+    Properties { origin: PerRay<'a, DVec3>, direction: PerRay<'a, GzCoord>, tmin: PerRay<'a, f32>, tmax: PerRay<'a, f32> },
+    /// Whatever some of them share is found out as they are asked about.
+    Rays(&'a [GzRay32]),
+}
+
+/// Rays asked about together.
 #[derive(Clone, Copy, Debug)]
 pub struct RayBatch<'a> {
     len: usize,
-    /// Origins in trace space.
-    pub origin: PerRay<'a, DVec3>,
-    /// Directions in trace space.
-    pub direction: PerRay<'a, GzCoord>,
-    /// Lower ends of t, strict.
-    pub tmin: PerRay<'a, f32>,
-    /// Upper ends of t, strict.
-    pub tmax: PerRay<'a, f32>,
+    pub(crate) given: Given<'a>,
     /// For each ray a triangle that it is known not to hit, such as the one that it leaves by [`crate::leave_surface`], or
     /// [`crate::NO_TRI`]: testing it is then saved. It does not change any answer; see [`Self::leaving`].
     pub leaves: Option<&'a [TriId]>,
 }
 
 impl<'a> RayBatch<'a> {
-    /// A batch of `len` rays.
+    /// A batch of `len` rays, property by property: origins and directions in trace space, lower and upper ends of t, both strict. What all
+    /// rays have in common is best given as [`PerRay::One`].
     ///
     /// # Panics
     ///
@@ -65,12 +78,18 @@ impl<'a> RayBatch<'a> {
         for forced in [origin.forced_len(), direction.forced_len(), tmin.forced_len(), tmax.forced_len()] {
             assert!(forced.is_none_or(|n| n == len), "every property of a batch of {len} rays is one or {len} values");
         }
-        Self { len, origin, direction, tmin, tmax, leaves: None }
+        Self { len, given: Given::Properties { origin, direction, tmin, tmax }, leaves: None }
     }
 
     /// Rays with t in (0, infinity).
     pub fn unbounded(len: usize, origin: PerRay<'a, DVec3>, direction: PerRay<'a, GzCoord>) -> Self {
         Self::new(len, origin, direction, PerRay::One(0.0), PerRay::One(f32::INFINITY))
+    }
+
+    /// Rays with origins in f32, taken as they lie in memory. Neighbours should go the same way where they can; which of them have an origin
+    /// or a direction in common need not be known.
+    pub fn of_rays(rays: &'a [GzRay32]) -> Self {
+        Self { len: rays.len(), given: Given::Rays(rays), leaves: None }
     }
 
     /// The same rays, each known not to hit the triangle `leaves[i]`. A wrong promise may show in the answer, or not.
@@ -101,7 +120,12 @@ impl<'a> RayBatch<'a> {
 
     /// Ray `i` by itself.
     pub fn ray(&self, i: usize) -> GzRay {
-        GzRay { origin: self.origin.get(i), direction: self.direction.get(i), tmin: self.tmin.get(i), tmax: self.tmax.get(i) }
+        match self.given {
+            Given::Properties { origin, direction, tmin, tmax } => {
+                GzRay { origin: origin.get(i), direction: direction.get(i), tmin: tmin.get(i), tmax: tmax.get(i) }
+            }
+            Given::Rays(rays) => rays[i].into(),
+        }
     }
 }
 

@@ -56,6 +56,27 @@ pub(crate) const LEAST_ORIGIN: f64 = f64::from_bits((1023 - 150) << 52);
 /// 2^128, the greatest.
 pub(crate) const GREATEST_ORIGIN: f64 = f64::from_bits((1023 + 128) << 52);
 
+/// A ray whose origin is f32 too: eight numbers in a row, 32 bytes, as files of rays and other ray tracers have it. It means the [`GzRay`] that
+/// it widens to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct GzRay32 {
+    /// Where t = 0 is, in trace space.
+    pub origin: GzCoord,
+    /// Hits at or before this t do not count.
+    pub tmin: f32,
+    /// The step from t to t + 1.
+    pub direction: GzCoord,
+    /// Hits at or beyond this t do not count.
+    pub tmax: f32,
+}
+
+impl From<GzRay32> for GzRay {
+    fn from(GzRay32 { origin, tmin, direction, tmax }: GzRay32) -> Self {
+        Self { origin: origin.as_dvec3(), direction, tmin, tmax }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -98,10 +98,11 @@ impl Tree {
     /// Begins anew with some camera rays and their hits.
     pub(crate) fn plant(&mut self, rays: &RayBatch<'_>, hits: &[Hit], pixels: Range<usize>) {
         self.nodes.clear();
-        self.rays.clear(rays.tmin.get(0));
+        self.rays.clear(rays.ray(pixels.start).tmin);
         for (id, pixel) in (0..).zip(pixels) {
+            let ray = rays.ray(pixel);
             self.nodes.push(Node::root(id, hits[pixel]));
-            self.rays.push(rays.origin.get(pixel), rays.direction.get(pixel));
+            self.rays.push(ray.origin, ray.direction);
         }
         self.eights = 0;
         self.met = 0;

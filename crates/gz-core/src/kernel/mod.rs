@@ -9,6 +9,7 @@ mod departure;
 mod dyadic;
 mod exact;
 mod filter;
+mod gather;
 mod group;
 mod height;
 mod leaving;

@@ -141,8 +141,8 @@ fn hits_of<S: Simd>(rays: &RayBatch<'_>, from: usize, pairs: &[(u32, TriId)], po
     }
     let (mut origins, mut directions, mut corners) = ([[0.0; 3]; 8], [[0.0; 3]; 8], [&positions[0]; 8]);
     for k in 0..8 {
-        origins[k] = rays.origin.get(of[k]).to_array();
-        directions[k] = rays.direction.get(of[k]).to_array();
+        let ray = rays.ray(of[k]);
+        (origins[k], directions[k]) = (ray.origin.to_array(), ray.direction.to_array());
         corners[k] = &positions[ids[k] as usize];
     }
     let wanted = 0xff >> (8 - pairs.len());
@@ -169,7 +169,7 @@ fn in_order(
         hits = others;
         own.sort_unstable_by(|hit, other| hit.t.total_cmp(&other.t));
         // Behind the hit that counted last.
-        let mut tmin = rays.tmin.get(number as usize);
+        let mut tmin = rays.ray(number as usize).tmin;
         for alike in own.chunk_by(|hit, other| hit.t == other.t) {
             // Most are by themselves, and surely there: a T-value that rounds to above tmin is above it.
             let counts = match alike {

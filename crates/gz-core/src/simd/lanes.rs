@@ -79,6 +79,19 @@ pub trait Lanes<const N: usize>: Copy {
         [Self::load(&rows[0]), Self::load(&rows[1]), Self::load(&rows[2])]
     }
 
+    /// Lane `i` of result `k` is `rows[i][k]`.
+    #[inline(always)]
+    fn unzip8(rows: &[[f32; 8]; N]) -> [Self; 8] {
+        let mut columns = [[0.0; N]; 8];
+        for (i, row) in rows.iter().enumerate() {
+            for (column, x) in columns.iter_mut().zip(row) {
+                column[i] = *x;
+            }
+        }
+        let [a, b, c, d, e, f, g, h] = &columns;
+        [Self::load(a), Self::load(b), Self::load(c), Self::load(d), Self::load(e), Self::load(f), Self::load(g), Self::load(h)]
+    }
+
     /// The lanes as an array.
     #[inline(always)]
     fn array(self) -> [f32; N] {
@@ -228,19 +241,23 @@ mod tests {
     struct Unzip;
 
     impl Task for Unzip {
-        type Output = [Vec<f64>; 9];
+        type Output = [Vec<f64>; 25];
 
         #[inline(always)]
         fn run<S: Simd>(self) -> Self::Output {
             let points: [[f32; 3]; 16] = std::array::from_fn(|i| [0, 100, 200].map(|k| (k + i) as f32));
             let doubles: [[f64; 3]; 8] = std::array::from_fn(|i| [0, 100, 200].map(|k| (k + i) as f64));
+            let rows: [[f32; 8]; 16] = std::array::from_fn(|i| std::array::from_fn(|k| (100 * k + i) as f32));
             let (eight, sixteen) = (<S::Eight>::unzip3(points.first_chunk().unwrap()), <S::Sixteen>::unzip3(&points));
+            let (eight8, sixteen8) = (<S::Eight>::unzip8(rows.first_chunk().unwrap()), <S::Sixteen>::unzip8(&rows));
             let doubles = <S::Doubles>::unzip3(&doubles);
             let f64s = |row: &[f32]| row.iter().map(|&x| x.into()).collect::<Vec<f64>>();
             std::array::from_fn(|k| match k {
                 0..3 => f64s(&eight[k].array()),
                 3..6 => f64s(&sixteen[k - 3].array()),
-                _ => doubles[k - 6].array().to_vec(),
+                6..9 => doubles[k - 6].array().to_vec(),
+                9..17 => f64s(&eight8[k - 9].array()),
+                _ => f64s(&sixteen8[k - 17].array()),
             })
         }
     }
@@ -312,7 +329,8 @@ mod tests {
     fn every_level_takes_points_apart() {
         for &level in SimdLevel::available() {
             for (k, row) in dispatch(level, Unzip).into_iter().enumerate() {
-                let expected = (0..if (3..6).contains(&k) { 16 } else { 8 }).map(|i| f64::from(100 * (k as u32 % 3) + i));
+                let (of, count) = (if k < 9 { k % 3 } else { (k - 9) % 8 }, if (3..6).contains(&k) || k >= 17 { 16 } else { 8 });
+                let expected = (0..count).map(|i| f64::from(100 * of as u32 + i));
                 assert_eq!(row, expected.collect::<Vec<_>>(), "{level:?} {k}");
             }
         }

@@ -15,7 +15,7 @@ pub use doubles::{Doubles, EightDoubles};
 pub use lanes::{Lanes, Simd, Task, arrays3, dispatch, load3, splat3};
 pub use pages::Pages;
 use std::sync::OnceLock;
-pub use view::{coordinates, coordinates_f64, nine, numbers_of};
+pub use view::{coordinates, coordinates_f64, nine, numbers_of, numbers_of_rays};
 
 /// A set of vector instructions that kernels are compiled for. Answers do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

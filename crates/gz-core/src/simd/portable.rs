@@ -320,6 +320,12 @@ impl<L: Lanes<8>> Lanes<16> for Pair<L> {
         [Self(x, x8), Self(y, y8), Self(z, z8)]
     }
     #[inline(always)]
+    fn unzip8(rows: &[[f32; 8]; 16]) -> [Self; 8] {
+        let (low, high) = halves(rows);
+        let ([a, b, c, d, e, f, g, h], [i, j, k, l, m, n, o, p]) = (L::unzip8(low), L::unzip8(high));
+        [Self(a, i), Self(b, j), Self(c, k), Self(d, l), Self(e, m), Self(f, n), Self(g, o), Self(h, p)]
+    }
+    #[inline(always)]
     fn same(ids: &[u32; 16], id: u32) -> u32 {
         let (low, high) = halves(ids);
         L::same(low, id) | L::same(high, id) << 8

@@ -5,8 +5,8 @@
 mod rays;
 
 use gz_bsp::BspTree;
-use gz_core::{ClassMask, GzCoord, Hit, RayQuery, TriBuffer, with_default_float_control};
-use rays::{BATCH, Given, PeerRay, PeerRay64, Scratch};
+use gz_core::{ClassMask, GzCoord, GzRay32, Hit, RayQuery, TriBuffer, with_default_float_control};
+use rays::{BATCH, Given, PeerRay64, Scratch};
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::mem::ManuallyDrop;
@@ -23,7 +23,7 @@ struct Peer {
 unsafe impl Send for Peer {}
 
 const _: () =
-    assert!(size_of::<Hit>() == 16 && size_of::<PeerRay>() == 32 && size_of::<PeerRay64>() == 48, "the interface says so");
+    assert!(size_of::<Hit>() == 16 && size_of::<GzRay32>() == 32 && size_of::<PeerRay64>() == 48, "the interface says so");
 
 impl Peer {
     fn new(tris: TriBuffer) -> Self {
@@ -108,7 +108,7 @@ fn build(variant: &CStr, vertices: &[[f32; 3]], indices: &[[u32; 3]], threads: c
 ///
 /// `peer` comes from [`peer_build`] and is not freed yet; `rays` points to `n` rays to be read and `hits` to `n` hits to be written.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn peer_closest(peer: *mut c_void, rays: *const PeerRay, n: usize, hits: *mut Hit) {
+pub unsafe extern "C" fn peer_closest(peer: *mut c_void, rays: *const GzRay32, n: usize, hits: *mut Hit) {
     // SAFETY: the caller's promises.
     unsafe { closest(peer, rays, n, hits) }
 }
@@ -130,7 +130,7 @@ pub unsafe extern "C" fn peer_closest64(peer: *mut c_void, rays: *const PeerRay6
 ///
 /// As [`peer_closest`], with `n` bytes to be written.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn peer_any(peer: *mut c_void, rays: *const PeerRay, n: usize, occluded: *mut u8) {
+pub unsafe extern "C" fn peer_any(peer: *mut c_void, rays: *const GzRay32, n: usize, occluded: *mut u8) {
     // SAFETY: the caller's promises.
     unsafe { any(peer, rays, n, occluded) }
 }

@@ -1,17 +1,7 @@
 //! Rays as the bench has them, made into batches as the product has them.
 
 use gz_core::glam::DVec3;
-use gz_core::{GzCoord, NO_TRI, PerRay, RayBatch, TriId};
-
-/// A ray of a ray file: 32 bytes.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct PeerRay {
-    origin: [f32; 3],
-    tmin: f32,
-    direction: [f32; 3],
-    tmax: f32,
-}
+use gz_core::{GzCoord, GzRay32, NO_TRI, PerRay, RayBatch, TriId};
 
 /// A ray as the product has it: 48 bytes.
 #[repr(C)]
@@ -27,25 +17,19 @@ pub struct PeerRay64 {
 /// Rays of either kind.
 pub trait Given: Copy {
     /// The batch of `rays`, 1 to [`BATCH`].
-    fn batch<'s>(scratch: &'s mut Scratch, rays: &[Self]) -> RayBatch<'s>;
+    fn batch<'s>(scratch: &'s mut Scratch, rays: &'s [Self]) -> RayBatch<'s>;
 }
 
-impl Given for PeerRay {
-    fn batch<'s>(scratch: &'s mut Scratch, rays: &[Self]) -> RayBatch<'s> {
-        scratch.batch(rays)
+/// As they lie in a file of rays.
+impl Given for GzRay32 {
+    fn batch<'s>(_: &'s mut Scratch, rays: &'s [Self]) -> RayBatch<'s> {
+        RayBatch::of_rays(rays)
     }
 }
 
 impl Given for PeerRay64 {
-    fn batch<'s>(scratch: &'s mut Scratch, rays: &[Self]) -> RayBatch<'s> {
-        scratch.batch64(rays)
-    }
-}
-
-impl PeerRay {
-    fn bits(&self) -> [u32; 8] {
-        let ([a, b, c], [d, e, f]) = (self.origin, self.direction);
-        [a, b, c, self.tmin, d, e, f, self.tmax].map(f32::to_bits)
+    fn batch<'s>(scratch: &'s mut Scratch, rays: &'s [Self]) -> RayBatch<'s> {
+        scratch.batch(rays)
     }
 }
 
@@ -74,52 +58,9 @@ impl Default for Scratch {
 }
 
 impl Scratch {
-    /// The batch of `rays`, 1 to [`BATCH`]. What they share is told once, as a camera, a directional light or an unbounded ray has it;
-    /// finding that out is part of the work that the bench times.
-    pub fn batch(&mut self, rays: &[PeerRay]) -> RayBatch<'_> {
-        let first = rays[0];
-        let mut other = [0; 8];
-        for ray in rays {
-            ahead(ray);
-            for ((other, bits), first) in other.iter_mut().zip(ray.bits()).zip(first.bits()) {
-                *other |= bits ^ first;
-            }
-        }
-        let [origin, tmin, direction, tmax] =
-            [&other[..3], &other[3..4], &other[4..7], &other[7..]].map(|bits| bits.iter().all(|&b| b == 0));
-        if origin {
-            self.origins[0] = DVec3::from_array(first.origin.map(f64::from));
-        } else {
-            for (ray, o) in rays.iter().zip(&mut self.origins) {
-                *o = DVec3::from_array(ray.origin.map(f64::from));
-            }
-        }
-        if direction {
-            self.directions[0] = GzCoord::from_array(first.direction);
-        } else {
-            for (ray, d) in rays.iter().zip(&mut self.directions) {
-                *d = GzCoord::from_array(ray.direction);
-            }
-        }
-        if !tmin || !tmax {
-            for (ray, (t0, t1)) in rays.iter().zip(self.tmins.iter_mut().zip(&mut self.tmaxs)) {
-                (*t0, *t1) = (ray.tmin, ray.tmax);
-            }
-        }
-        let n = rays.len();
-        RayBatch::new(
-            n,
-            if origin { PerRay::One(self.origins[0]) } else { PerRay::Each(&self.origins[..n]) },
-            if direction { PerRay::One(self.directions[0]) } else { PerRay::Each(&self.directions[..n]) },
-            if tmin { PerRay::One(first.tmin) } else { PerRay::Each(&self.tmins[..n]) },
-            if tmax { PerRay::One(first.tmax) } else { PerRay::Each(&self.tmaxs[..n]) },
-        )
-    }
-}
-
-impl Scratch {
-    /// The same for rays as the product has them. Their ends are told once where they are equal, and so is a direction; origins differ.
-    fn batch64(&mut self, rays: &[PeerRay64]) -> RayBatch<'_> {
+    /// The batch of `rays`, 1 to [`BATCH`]. Ends are told once where they are equal, and so is a direction; origins differ. Finding that out is
+    /// part of the work that the bench times.
+    fn batch(&mut self, rays: &[PeerRay64]) -> RayBatch<'_> {
         let first = rays[0];
         let bits = |ray: &PeerRay64| {
             let [x, y, z] = ray.direction;

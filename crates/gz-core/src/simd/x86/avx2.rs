@@ -147,6 +147,30 @@ impl Lanes<8> for Avx2 {
         }
     }
     #[inline(always)]
+    fn unzip8(rows: &[[f32; 8]; 8]) -> [Self; 8] {
+        let start: *const f32 = rows.as_ptr().cast();
+        let mut out = [Self(call!(_mm256_setzero_ps())); 8];
+        for half in 0..2 {
+            // SAFETY: of the 64 numbers of `rows` four at a time are read, a half of rows i and i + 4 each; features as above.
+            let [a, b, c, d] = unsafe {
+                let start = start.add(4 * half);
+                [
+                    _mm256_loadu2_m128(start.add(32), start),
+                    _mm256_loadu2_m128(start.add(40), start.add(8)),
+                    _mm256_loadu2_m128(start.add(48), start.add(16)),
+                    _mm256_loadu2_m128(start.add(56), start.add(24)),
+                ]
+            };
+            let (ab, cd) = (call!(_mm256_unpacklo_ps(a, b)), call!(_mm256_unpacklo_ps(c, d)));
+            out[4 * half] = Self(call!(_mm256_shuffle_ps::<0x44>(ab, cd)));
+            out[4 * half + 1] = Self(call!(_mm256_shuffle_ps::<0xee>(ab, cd)));
+            let (ab, cd) = (call!(_mm256_unpackhi_ps(a, b)), call!(_mm256_unpackhi_ps(c, d)));
+            out[4 * half + 2] = Self(call!(_mm256_shuffle_ps::<0x44>(ab, cd)));
+            out[4 * half + 3] = Self(call!(_mm256_shuffle_ps::<0xee>(ab, cd)));
+        }
+        out
+    }
+    #[inline(always)]
     fn same(ids: &[u32; 8], id: u32) -> u32 {
         // SAFETY: reads the 32 bytes of `ids`, unaligned; features as above.
         let ids = unsafe { _mm256_loadu_si256(ids.as_ptr().cast()) };

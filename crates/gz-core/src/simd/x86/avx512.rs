@@ -118,6 +118,32 @@ impl Lanes<16> for Avx512 {
         }
     }
     #[inline(always)]
+    fn unzip8(rows: &[[f32; 8]; 16]) -> [Self; 8] {
+        let start: *const f32 = rows.as_ptr().cast();
+        let mut out = [Self(call!(_mm512_setzero_ps())); 8];
+        for half in 0..2 {
+            let mut fours = [out[0].0; 4];
+            for i in 0..4 {
+                // SAFETY: of the 128 numbers of `rows` four at a time are read, a half of rows i, i + 4, i + 8 and i + 12; features as above.
+                fours[i] = unsafe {
+                    let start = start.add(8 * i + 4 * half);
+                    let one = _mm512_castps128_ps512(_mm_loadu_ps(start));
+                    let two = _mm512_insertf32x4::<1>(one, _mm_loadu_ps(start.add(32)));
+                    let three = _mm512_insertf32x4::<2>(two, _mm_loadu_ps(start.add(64)));
+                    _mm512_insertf32x4::<3>(three, _mm_loadu_ps(start.add(96)))
+                };
+            }
+            let [a, b, c, d] = fours;
+            let (ab, cd) = (call!(_mm512_unpacklo_ps(a, b)), call!(_mm512_unpacklo_ps(c, d)));
+            out[4 * half] = Self(call!(_mm512_shuffle_ps::<0x44>(ab, cd)));
+            out[4 * half + 1] = Self(call!(_mm512_shuffle_ps::<0xee>(ab, cd)));
+            let (ab, cd) = (call!(_mm512_unpackhi_ps(a, b)), call!(_mm512_unpackhi_ps(c, d)));
+            out[4 * half + 2] = Self(call!(_mm512_shuffle_ps::<0x44>(ab, cd)));
+            out[4 * half + 3] = Self(call!(_mm512_shuffle_ps::<0xee>(ab, cd)));
+        }
+        out
+    }
+    #[inline(always)]
     fn same(ids: &[u32; 16], id: u32) -> u32 {
         // SAFETY: reads the 64 bytes of `ids`, unaligned; features as above.
         let ids = unsafe { _mm512_loadu_si512(ids.as_ptr().cast()) };
