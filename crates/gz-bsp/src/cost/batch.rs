@@ -177,7 +177,13 @@ impl<V: Visits> Task for ClosestTask<'_, V> {
         let Self { tree, rays, targets, hits, visits } = self;
         let mut desk = Desk::take();
         let Desk { bundle, slabs, queue, stack, abreast } = &mut *desk;
-        for (from, hits) in (0..).step_by(BUNDLE).zip(hits.chunks_mut(BUNDLE)) {
+        let (mut from, mut later) = (0, hits);
+        while !later.is_empty() {
+            let hits;
+            (hits, later) = later.split_at_mut(later.len().min(BUNDLE));
+            for hit in later.iter().take(BUNDLE).step_by(4) {
+                S::prefetch(hit);
+            }
             let fit = bundle.gather::<S>(rays, from, hits.len(), &tree.space);
             slabs.gather::<S>(bundle, hits.len().div_ceil(LANES), tree.space.reach);
             let quest = ClosestOf { tree, bundle: &mut *bundle, rays, targets: &targets, visits: &mut *visits };
@@ -186,6 +192,7 @@ impl<V: Visits> Task for ClosestTask<'_, V> {
             if count(&fit) as usize != hits.len() {
                 tree.far_hits(rays, from, &fit, &targets, hits, visits);
             }
+            from += BUNDLE;
         }
     }
 }

@@ -12,6 +12,8 @@ use crate::simd::{Doubles, EightDoubles, Lanes, Simd, arrays3, coordinates, coor
 use crate::{GzCoord, GzRay32, NO_TRI, PerRay, RayBatch};
 use glam::DVec3;
 
+const AHEAD: usize = 96;
+
 impl RayBundle {
     /// Takes rays `from..from + len` of a batch, 1 to [`super::BUNDLE`], and tells which of them the f32 kernels can take, for triangles in
     /// `space`.
@@ -34,7 +36,12 @@ impl RayBundle {
                     take(&mut self.tmin[p], &tmin, from, len);
                     take(&mut self.limit[p], &tmax, from, len);
                 }
-                Given::Rays(rays) => self.take_rays::<S>(p, &rays[from..from + len]),
+                Given::Rays(rays) => {
+                    for ray in rays.iter().skip(from + AHEAD).take(LANES).step_by(2) {
+                        S::prefetch(ray);
+                    }
+                    self.take_rays::<S>(p, &rays[from..from + len]);
+                }
             }
             self.near[p] = self.limit[p];
             self.tris[p] = [NO_TRI; LANES];

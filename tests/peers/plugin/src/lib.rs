@@ -6,7 +6,7 @@ mod rays;
 
 use gz_bsp::BspTree;
 use gz_core::{ClassMask, GzCoord, GzRay32, Hit, RayQuery, TriBuffer, with_default_float_control};
-use rays::{BATCH, Given, PeerRay64, Scratch};
+use rays::{Given, PeerRay64, Scratch};
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::mem::ManuallyDrop;
@@ -154,7 +154,7 @@ unsafe fn closest<R: Given>(peer: *mut c_void, rays: *const R, n: usize, hits: *
     // anything in it may be seen as hits.
     let (peer, rays, hits) = unsafe { (&*peer.cast::<Peer>(), slice(rays, n), slice_mut(hits, n)) };
     SCRATCH.with_borrow_mut(|scratch| {
-        for (rays, hits) in rays.chunks(BATCH).zip(hits.chunks_mut(BATCH)) {
+        for (rays, hits) in rays.chunks(R::BATCH).zip(hits.chunks_mut(R::BATCH)) {
             peer.tree.closest_hits(&R::batch(scratch, rays), ClassMask::ALL, hits);
         }
     });
@@ -170,7 +170,7 @@ unsafe fn any<R: Given>(peer: *mut c_void, rays: *const R, n: usize, occluded: *
     // SAFETY: the same memory, not used as `bytes` while `occluded` lives; a 0 is a `bool`, and a `bool` is a byte of 0 or 1.
     let occluded = unsafe { slice_mut(bytes.as_mut_ptr().cast::<bool>(), n) };
     SCRATCH.with_borrow_mut(|scratch| {
-        for (rays, occluded) in rays.chunks(BATCH).zip(occluded.chunks_mut(BATCH)) {
+        for (rays, occluded) in rays.chunks(R::BATCH).zip(occluded.chunks_mut(R::BATCH)) {
             peer.tree.any_hits(&R::batch(scratch, rays), ClassMask::ALL, occluded);
         }
     });

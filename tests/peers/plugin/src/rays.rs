@@ -16,18 +16,25 @@ pub struct PeerRay64 {
 
 /// Rays of either kind.
 pub trait Given: Copy {
-    /// The batch of `rays`, 1 to [`BATCH`].
+    /// Rays in a batch.
+    const BATCH: usize;
+
+    /// The batch of `rays`, 1 to [`Self::BATCH`].
     fn batch<'s>(scratch: &'s mut Scratch, rays: &'s [Self]) -> RayBatch<'s>;
 }
 
 /// As they lie in a file of rays.
 impl Given for GzRay32 {
+    const BATCH: usize = usize::MAX;
+
     fn batch<'s>(_: &'s mut Scratch, rays: &'s [Self]) -> RayBatch<'s> {
         RayBatch::of_rays(rays)
     }
 }
 
 impl Given for PeerRay64 {
+    const BATCH: usize = BATCH;
+
     fn batch<'s>(scratch: &'s mut Scratch, rays: &'s [Self]) -> RayBatch<'s> {
         scratch.batch(rays)
     }
