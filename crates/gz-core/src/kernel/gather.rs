@@ -12,6 +12,8 @@ use crate::simd::{Doubles, EightDoubles, Lanes, Simd, arrays3, coordinates, coor
 use crate::{GzCoord, GzRay32, NO_TRI, PerRay, RayBatch};
 use glam::DVec3;
 
+/// Rays in the caller's memory are asked for so many ahead: a bundle and a half, and no whole number of 4 KiB, as the first-level cache has few
+/// places for what lies those apart.
 const AHEAD: usize = 96;
 
 impl RayBundle {
@@ -27,46 +29,55 @@ impl RayBundle {
         let mut fit = [0; PACKETS];
         let packets = len.div_ceil(LANES);
         let mut tiny = 0;
-        for (p, fit) in fit.iter_mut().enumerate().take(packets) {
-            let (from, len) = (from + p * LANES, (len - p * LANES).min(LANES));
-            match rays.given {
-                Given::Properties { origin, direction, tmin, tmax } => {
-                    self.take_directions::<S>(p, &direction, from, len);
-                    self.take_origins::<S>(p, &origin, from, len);
-                    take(&mut self.tmin[p], &tmin, from, len);
-                    take(&mut self.limit[p], &tmax, from, len);
+        match &rays.given {
+            Given::Properties { origin, direction, tmin, tmax } => {
+                (self.common_origin, self.common_direction) = (origin.is_one(), direction.is_one());
+                for p in 0..packets {
+                    let (from, len) = (from + p * LANES, (len - p * LANES).min(LANES));
+                    self.take_directions::<S>(p, direction, from, len);
+                    self.take_origins::<S>(p, origin, from, len);
+                    take(&mut self.tmin[p], tmin, from, len);
+                    take(&mut self.limit[p], tmax, from, len);
+                    let (whole, near_zero) = self.complete::<S>(p, rays, from, len, space);
+                    fit[p] = whole;
+                    tiny |= near_zero & whole;
                 }
-                Given::Rays(rays) => {
-                    for ray in rays.iter().skip(from + AHEAD).take(LANES).step_by(2) {
+            }
+            Given::Rays(all) => {
+                for (p, of_packet) in all[from..from + len].chunks(LANES).enumerate() {
+                    for ray in all.iter().skip(from + p * LANES + AHEAD).take(LANES).step_by(2) {
                         S::prefetch(ray);
                     }
-                    self.take_rays::<S>(p, &rays[from..from + len]);
+                    self.take_rays::<S>(p, of_packet);
+                    // All origins of f32 are valid, and are here what they are.
+                    (fit[p], _) = self.complete::<S>(p, rays, from + p * LANES, of_packet.len(), space);
                 }
+                self.common_origin = are_alike::<S>(&self.origin, packets);
+                self.common_direction = are_alike::<S>(&self.direction, packets);
             }
-            self.near[p] = self.limit[p];
-            self.tris[p] = [NO_TRI; LANES];
-            if let Some(leaves) = rays.leaves {
-                match leaves[from..from + len].first_chunk() {
-                    Some(all) => self.leaves[p] = *all,
-                    None => self.leaves[p][..len].copy_from_slice(&leaves[from..from + len]),
-                }
-            }
-            let (whole, near_zero) = self.fit::<S::Sixteen>(p, space.reach);
-            *fit = whole & ((1u32 << len) - 1);
-            tiny |= near_zero & *fit;
         }
-        (self.common_origin, self.common_direction) = match rays.given {
-            Given::Properties { origin, direction, .. } => (origin.is_one(), direction.is_one()),
-            Given::Rays(_) => (are_alike::<S>(&self.origin, packets), are_alike::<S>(&self.direction, packets)),
-        };
-        // All origins of f32 are valid, and are here what they are.
-        if tiny != 0 && !self.origins_are_f32 {
+        if tiny != 0 {
             drop_invalid(&mut fit, rays, from);
         }
         if !is_none(&fit) {
             self.settle_down::<S>(&fit, packets);
         }
         fit
+    }
+
+    /// What else there is of a packet, rays `from..from + len` of a batch, and [`Self::fit`] of those.
+    #[inline(always)]
+    fn complete<S: Simd>(&mut self, p: usize, rays: &RayBatch<'_>, from: usize, len: usize, space: &FilterSpace) -> (u32, u32) {
+        self.near[p] = self.limit[p];
+        self.tris[p] = [NO_TRI; LANES];
+        if let Some(leaves) = rays.leaves {
+            match leaves[from..from + len].first_chunk() {
+                Some(all) => self.leaves[p] = *all,
+                None => self.leaves[p][..len].copy_from_slice(&leaves[from..from + len]),
+            }
+        }
+        let (fit, near_zero) = self.fit::<S::Sixteen>(p, space.reach);
+        (fit & ((1u32 << len) - 1), near_zero)
     }
 
     #[inline(always)]

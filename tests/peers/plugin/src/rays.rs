@@ -107,7 +107,7 @@ impl Scratch {
 /// Asks for the memory of the ray that is a batch behind `ray`, as it comes from far away: a caller's array, not the product's own.
 #[inline(always)]
 fn ahead<R>(ray: &R) {
-    let next = std::ptr::from_ref(ray).wrapping_add(BATCH).cast::<i8>();
+    let next = std::ptr::from_ref(ray).wrapping_add(110).cast::<i8>();
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a prefetch reads nothing and may be given any address. SSE is part of x86-64.
     unsafe {
