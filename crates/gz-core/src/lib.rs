@@ -55,7 +55,7 @@ pub use matrix::GzMatrix;
 pub use passages::Passages;
 pub use pixel::{GzPixel, TBuffer, TileScratch, tile_hits, trace_tile};
 pub use primary::PrimaryRays;
-pub use query::{ClassMask, PerRay, RayBatch, RayQuery, Targets};
+pub use query::{ClassMask, Given, PerRay, RayBatch, RayQuery, Targets};
 pub use ray::{GzRay, GzRay32};
 pub use simd::{SimdLevel, with_default_float_control};
 pub use stack::{MatrixStack, StackError};

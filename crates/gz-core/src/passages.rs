@@ -1,7 +1,6 @@
 //! Rays that some triangles let through: what they meet on their way, and whether something stops them.
 
-use crate::query::Given;
-use crate::{ClassMask, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TriId};
+use crate::{ClassMask, Given, GzCoord, GzRay, Hit, PerRay, RayBatch, RayQuery, TriId};
 use glam::DVec3;
 
 /// The answer to [`RayQuery::passages`].
@@ -123,7 +122,7 @@ impl Part {
     fn batch<'a>(&'a self, rays: &RayBatch<'a>) -> RayBatch<'a> {
         let (mut origin, mut direction) = (PerRay::Each(&self.origins[..]), PerRay::Each(&self.directions[..]));
         let mut tmax = PerRay::Each(&self.tmax[..]);
-        if let Given::Properties { origin: all, direction: along, tmax: ends, .. } = rays.given {
+        if let Given::Properties { origin: all, direction: along, tmax: ends, .. } = *rays.given() {
             (origin, direction, tmax) = (all.or(origin), along.or(direction), ends.or(tmax));
         }
         let batch = RayBatch::new(self.numbers.len(), origin, direction, PerRay::Each(&self.tmin), tmax);

@@ -42,12 +42,21 @@ impl<'a, T: Copy> PerRay<'a, T> {
     }
 }
 
-/// Rays as they are given: property by property, or ray by ray.
+/// Rays as they are given to a batch.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Given<'a> {
-    /// See [`GzRay`] for what each means.
-    Properties { origin: PerRay<'a, DVec3>, direction: PerRay<'a, GzCoord>, tmin: PerRay<'a, f32>, tmax: PerRay<'a, f32> },
-    /// Whatever some of them share is found out as they are asked about.
+pub enum Given<'a> {
+    /// Property by property: see [`GzRay`] for what each means. Those given for each ray are as long as the batch.
+    Properties {
+        /// Origins in trace space.
+        origin: PerRay<'a, DVec3>,
+        /// Directions in trace space.
+        direction: PerRay<'a, GzCoord>,
+        /// Lower ends of t, strict.
+        tmin: PerRay<'a, f32>,
+        /// Upper ends of t, strict.
+        tmax: PerRay<'a, f32>,
+    },
+    /// Ray by ray. What some of them share is for the query to find out.
     Rays(&'a [GzRay32]),
 }
 
@@ -55,15 +64,14 @@ pub(crate) enum Given<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct RayBatch<'a> {
     len: usize,
-    pub(crate) given: Given<'a>,
+    given: Given<'a>,
     /// For each ray a triangle that it is known not to hit, such as the one that it leaves by [`crate::leave_surface`], or
     /// [`crate::NO_TRI`]: testing it is then saved. It does not change any answer; see [`Self::leaving`].
     pub leaves: Option<&'a [TriId]>,
 }
 
 impl<'a> RayBatch<'a> {
-    /// A batch of `len` rays, property by property: origins and directions in trace space, lower and upper ends of t, both strict. What all
-    /// rays have in common is best given as [`PerRay::One`].
+    /// A batch of `len` rays, property by property. What all rays have in common is best given as [`PerRay::One`].
     ///
     /// # Panics
     ///
@@ -106,6 +114,12 @@ impl<'a> RayBatch<'a> {
     /// The triangle that ray `i` is known not to hit, or [`crate::NO_TRI`].
     pub fn left_by(&self, i: usize) -> TriId {
         self.leaves.map_or(NO_TRI, |leaves| leaves[i])
+    }
+
+    /// The rays as they were given.
+    #[inline]
+    pub fn given(&self) -> &Given<'a> {
+        &self.given
     }
 
     /// The number of rays.

@@ -4,7 +4,9 @@ use super::recorder::Recorder;
 use glam::{DVec2, DVec3};
 use gz_app::error::AppError;
 use gz_app::random_lines::RandomLines;
-use gz_core::{Bounds, ClassMask, GzCoord, GzRay, Hit, NO_TRI, PerRay, RayBatch, RayQuery, TileGrid, TriId, leave_surface};
+use gz_core::{
+    Bounds, ClassMask, GzCoord, GzRay, GzRay32, Hit, NO_TRI, PerRay, RayBatch, RayQuery, TileGrid, TriId, leave_surface,
+};
 use gz_shade::reflection::reflect;
 use gz_shade::{MaterialKind, Scene, SceneNeeds, shade_frame};
 use rayon::prelude::*;
@@ -17,6 +19,11 @@ pub(super) enum Values<T> {
 }
 
 impl<T: Copy> Values<T> {
+    /// One property of `rays`.
+    pub(super) fn each(rays: &[GzRay32], property: impl Fn(GzRay) -> T) -> Self {
+        Self::Each(rays.iter().map(|&ray| property(ray.into())).collect())
+    }
+
     pub(super) fn of(values: &PerRay<'_, T>) -> Self {
         match *values {
             PerRay::One(value) => Self::One(value),

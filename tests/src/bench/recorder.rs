@@ -1,7 +1,7 @@
 //! A ray query that keeps what it is asked.
 
 use super::rays::{Asked, Values};
-use gz_core::{ClassMask, Hit, RayBatch, RayQuery, TriBuffer};
+use gz_core::{ClassMask, Given, Hit, RayBatch, RayQuery, TriBuffer};
 use std::sync::{Mutex, PoisonError};
 
 /// Passes every question on to another query and keeps a copy of it.
@@ -25,12 +25,23 @@ impl<'q> Recorder<'q> {
         if rays.is_empty() {
             return;
         }
+        let (origin, direction, tmin, tmax) = match rays.given() {
+            Given::Properties { origin, direction, tmin, tmax } => {
+                (Values::of(origin), Values::of(direction), Values::of(tmin), Values::of(tmax))
+            }
+            Given::Rays(rays) => (
+                Values::each(rays, |ray| ray.origin),
+                Values::each(rays, |ray| ray.direction),
+                Values::each(rays, |ray| ray.tmin),
+                Values::each(rays, |ray| ray.tmax),
+            ),
+        };
         let asked = Asked {
             len: rays.len(),
-            origin: Values::of(&rays.origin),
-            direction: Values::of(&rays.direction),
-            tmin: Values::of(&rays.tmin),
-            tmax: Values::of(&rays.tmax),
+            origin,
+            direction,
+            tmin,
+            tmax,
             classes,
             any,
             leaves: rays.leaves.map(<[_]>::to_vec).unwrap_or_default(),
@@ -58,7 +69,7 @@ impl RayQuery for Recorder<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gz_core::{BruteForce, GzCoord, GzRay};
+    use gz_core::{BruteForce, GzCoord, GzRay, GzRay32};
 
     #[test]
     fn questions_are_kept_and_answered() {
@@ -69,7 +80,12 @@ mod tests {
         let ray = GzRay::new(GzCoord::new(1.0, 1.0, 0.0), GzCoord::Z);
         assert_eq!(recorder.closest_hit(&ray), brute.closest_hit(&ray));
         assert!(recorder.any_hit(&ray));
+        let in_memory = [GzRay32 { origin: ray.origin.as_vec3(), tmin: 0.5, direction: ray.direction, tmax: 7.0 }];
+        let mut hits = [Hit::MISS];
+        recorder.closest_hits(&RayBatch::of_rays(&in_memory), ClassMask::ALL, &mut hits);
+        assert_eq!(hits[0], brute.closest_hit(&ray));
         let taken = recorder.taken();
-        assert_eq!(taken.iter().map(|asked| (asked.any, asked.batch().ray(0))).collect::<Vec<_>>(), [(false, ray), (true, ray)]);
+        let expected = [(false, ray), (true, ray), (false, in_memory[0].into())];
+        assert_eq!(taken.iter().map(|asked| (asked.any, asked.batch().ray(0))).collect::<Vec<_>>(), expected);
     }
 }

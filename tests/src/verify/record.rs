@@ -160,6 +160,7 @@ fn shared<T: Copy, B: PartialEq>(values: &[T], bits: impl Fn(&T) -> B) -> PerRay
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gz_core::Given;
 
     #[test]
     fn every_ray_is_compared_and_every_strideth_judged() {
@@ -202,8 +203,9 @@ mod tests {
                 let block = class.block(5, number);
                 each_batch(&block, |place, batch| {
                     common[0] += 1;
-                    common[1] += usize::from(matches!(batch.origin, PerRay::One(_)));
-                    common[2] += usize::from(matches!(batch.direction, PerRay::One(_)));
+                    let Given::Properties { origin, direction, .. } = batch.given() else { panic!("told property by property") };
+                    common[1] += usize::from(matches!(origin, PerRay::One(_)));
+                    common[2] += usize::from(matches!(direction, PerRay::One(_)));
                     for (k, ray) in place.zip(0..) {
                         assert_eq!(block.rays[k], batch.ray(ray));
                     }

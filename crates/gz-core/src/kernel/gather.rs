@@ -7,9 +7,8 @@ use super::filter::{GREATEST_DIRECTION, GREATEST_REACH, Margin};
 use super::group::cross;
 use super::packets::{Each, LANES, PACKETS, Rays, Row, eight, eight_mut, first, is_none, packet_of, span};
 use super::space::FilterSpace;
-use crate::query::Given;
 use crate::simd::{Doubles, EightDoubles, Lanes, Simd, arrays3, coordinates, coordinates_f64, numbers_of_rays};
-use crate::{GzCoord, GzRay32, NO_TRI, PerRay, RayBatch};
+use crate::{Given, GzCoord, GzRay32, NO_TRI, PerRay, RayBatch};
 use glam::DVec3;
 
 /// Rays in the caller's memory are asked for so many ahead: a bundle and a half, and no whole number of 4 KiB, as the first-level cache has few
@@ -25,11 +24,11 @@ impl RayBundle {
         self.scale = space.scale.to_array();
         self.found = [0; PACKETS];
         self.leaving = rays.leaves.is_some();
-        self.origins_are_f32 = matches!(rays.given, Given::Rays(_));
+        self.origins_are_f32 = matches!(rays.given(), Given::Rays(_));
         let mut fit = [0; PACKETS];
         let packets = len.div_ceil(LANES);
         let mut tiny = 0;
-        match &rays.given {
+        match rays.given() {
             Given::Properties { origin, direction, tmin, tmax } => {
                 (self.common_origin, self.common_direction) = (origin.is_one(), direction.is_one());
                 for p in 0..packets {
