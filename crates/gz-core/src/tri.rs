@@ -1,5 +1,6 @@
 //! Triangles and the growable buffer that holds them.
 
+use crate::simd::advise_large;
 use crate::{Bounds, GzColor, GzCoord, GzTextureIndex, Hit, TriId};
 
 /// The number of a material in its scene, counting from 0.
@@ -110,9 +111,12 @@ impl TriBuffer {
         fn room<T>(kept: bool, capacity: usize) -> Vec<T> {
             Vec::with_capacity(if kept { capacity } else { 0 })
         }
+        let mut positions = room(true, capacity);
+        // Answers are formed from them, here and there.
+        advise_large(&mut positions);
         Self {
             keep,
-            positions: room(true, capacity),
+            positions,
             normals: room(keep.normals, capacity),
             uvs: room(keep.uvs, capacity),
             colors: room(keep.colors, capacity),

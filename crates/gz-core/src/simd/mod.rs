@@ -13,7 +13,7 @@ mod x86;
 pub use control::with_default_float_control;
 pub use doubles::{Doubles, EightDoubles};
 pub use lanes::{Lanes, Simd, Task, arrays3, dispatch, load3, splat3};
-pub use pages::Pages;
+pub use pages::{Pages, advise_large};
 use std::sync::OnceLock;
 pub use view::{coordinates, coordinates_f64, nine, numbers_of, numbers_of_rays};
 

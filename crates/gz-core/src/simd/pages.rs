@@ -48,10 +48,21 @@ impl<T: Copy> Pages<T> {
     }
 }
 
+/// Asks for large pages for the room that `elements` have, filled or not. It is theirs until they move, and what they hold stays.
+pub fn advise_large<T: Copy>(elements: &mut Vec<T>) {
+    const SMALL: usize = 1 << 12;
+    let (start, bytes) = (elements.as_mut_ptr().cast::<u8>(), elements.capacity() * size_of::<T>());
+    // Pages are advised about whole; what lies before the first one and behind the last is not theirs alone.
+    let before = start.addr().wrapping_neg() % SMALL;
+    if bytes >= LARGE + before {
+        advise(start.wrapping_add(before), (bytes - before) / SMALL * SMALL);
+    }
+}
+
 /// Asks for large pages. A system that has none ignores it.
 #[cfg(target_os = "linux")]
 fn advise(start: *mut u8, bytes: usize) {
-    // SAFETY: the range was just allocated and begins at a page; the advice changes how it is backed and not what it holds.
+    // SAFETY: the range is allocated and its owner's alone, and begins at a page; the advice changes how it is backed and not what it holds.
     let _ = unsafe { libc::madvise(start.cast(), bytes, libc::MADV_HUGEPAGE) };
 }
 
@@ -113,6 +124,17 @@ mod tests {
         }
         assert_eq!(format!("{:?}", Pages::copy_of(&[1u8, 2])), "[1, 2]");
         assert_eq!(Pages::copy_of(&[(); 5]).len(), 5);
+    }
+
+    #[test]
+    fn advice_changes_no_element() {
+        for len in [0, 3, LARGE / 8, LARGE / 2] {
+            let mut numbers: Vec<u64> = Vec::with_capacity(len);
+            advise_large(&mut numbers);
+            numbers.extend((0..len as u64).map(|k| k * k));
+            advise_large(&mut numbers);
+            assert!(numbers.iter().zip(0..).all(|(&number, k)| number == k * k) && numbers.len() == len);
+        }
     }
 
     #[test]
