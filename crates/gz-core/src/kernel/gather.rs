@@ -168,6 +168,21 @@ impl RayBundle {
         (fit, x.min(y).min(z).below(L::splat(f32::MIN_POSITIVE * greatest_scale)))
     }
 
+    /// How far the origins of `fit` may be from the f32 ones: half a unit in the last place, and what the least numbers lose.
+    #[inline(always)]
+    fn lost<S: Simd>(&self, fit: &Rays, packets: usize) -> f32 {
+        let mut reach = self.centre[0].abs().max(self.centre[1].abs()).max(self.centre[2].abs());
+        if !self.common_origin {
+            let mut far = <S::Sixteen>::splat(0.0);
+            for p in 0..packets {
+                let o = packet_of::<S::Sixteen>(&self.origin, p);
+                far = far.max(o[0].abs().max(o[1].abs()).max(o[2].abs()).select(fit[p], far));
+            }
+            reach = far.greatest();
+        }
+        reach * f32::EPSILON + f32::MIN_POSITIVE
+    }
+
     /// Chooses the centre and forms what depends on it; only the rays of `fit` matter.
     #[inline(always)]
     fn settle_down<S: Simd>(&mut self, fit: &Rays, packets: usize) {
@@ -180,17 +195,7 @@ impl RayBundle {
         let size = size * (1.0 + 2.0 * f32::EPSILON);
         let (p, lane) = first(fit).unwrap_or_default();
         self.centre = [self.origin[0][p][lane], self.origin[1][p][lane], self.origin[2][p][lane]];
-        let mut reach = self.centre[0].abs().max(self.centre[1].abs()).max(self.centre[2].abs());
-        if !self.common_origin {
-            let mut far = zero;
-            for p in 0..packets {
-                let o = packet_of::<S::Sixteen>(&self.origin, p);
-                far = far.max(o[0].abs().max(o[1].abs()).max(o[2].abs()).select(fit[p], zero));
-            }
-            reach = far.greatest();
-        }
-        // Half a unit in the last place, and what the least numbers lose.
-        let lost = if self.origins_are_f32 { 0.0 } else { reach * f32::EPSILON + f32::MIN_POSITIVE };
+        let lost = if self.origins_are_f32 { 0.0 } else { self.lost::<S>(fit, packets) };
         self.alone = Margin::new(size, 0.0, lost);
         if self.common_origin {
             self.margin = self.alone;
