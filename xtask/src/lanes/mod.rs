@@ -39,7 +39,7 @@ const LIBRARIES: [Library; 3] = [
 ];
 
 /// What a hot function may call, by words of its path that stand together, and why.
-const ALLOWED: [(&str, &str); 37] = [
+const ALLOWED: [(&str, &str); 38] = [
     ("memcpy", "copies"),
     ("memset", "copies"),
     ("memmove", "copies"),
@@ -59,6 +59,7 @@ const ALLOWED: [(&str, &str); 37] = [
     ("queue::Queue::grow", "cold: the queue is full"),
     ("alloc::raw_vec", "a list is full"),
     ("passage::GoingThrough::sort", "once a bundle, where rays meet something"),
+    ("passage::keep_several", "once a bundle, where rays meet something"),
     ("passage::in_order", "once a bundle, where rays meet something"),
     ("query::RayBatch::ray", "one ray by itself, set up for the exact test"),
     ("query::RayBatch::left_by", "one ray by itself, set up for the exact test"),
@@ -69,8 +70,8 @@ const ALLOWED: [(&str, &str); 37] = [
     ("kernel::together::bundle::RayBundle::settle_any", "cold: what f32 cannot prove"),
     ("kernel::order::is_hit", "cold: what f32 cannot prove"),
     ("kernel::answer::alone", "cold: what f64 cannot round"),
-    ("kernel::bundle::padded", "cold: the last rays of a batch"),
-    ("kernel::bundle::drop_invalid", "cold: origins next to 0"),
+    ("kernel::gather::padded", "cold: the last rays of a batch"),
+    ("kernel::gather::drop_invalid", "cold: origins next to 0"),
     ("BspTree::far_hits", "cold: rays beyond the range of f32"),
     ("BspTree::far_answers", "cold: rays beyond the range of f32"),
     ("kernel::exact", "cold: what f64 cannot prove"),

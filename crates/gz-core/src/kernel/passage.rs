@@ -65,16 +65,24 @@ impl OnHit for GoingThrough<'_> {
         self.sort(blocked);
         self.found.clear();
         let Self { pairs, several, hits, met, .. } = self;
-        // A single one counts, wherever it lies.
-        several.clear();
-        several.extend(of_each_ray(pairs).filter(|of_ray| of_ray.len() > 1).flatten());
-        hits.clear();
-        hits.resize(several.len(), Hit::MISS);
-        for (pairs, hits) in several.chunks(8).zip(hits.chunks_mut(8)) {
-            hits_of::<S>(rays, from, pairs, positions, hits);
+        keep_several(pairs, several, hits);
+        let mut first = 0;
+        while first < several.len() {
+            let end = several.len().min(first + 8);
+            hits_of::<S>(rays, from, &several[first..end], positions, &mut hits[first..end]);
+            first = end;
         }
         in_order(rays, from, positions, pairs, hits, met);
     }
+}
+
+/// Keeps the pairs of rays that have several, with room for their hits: a single one counts, wherever it lies.
+#[inline(never)]
+fn keep_several(pairs: &[(u32, TriId)], several: &mut Vec<(u32, TriId)>, hits: &mut Vec<Hit>) {
+    several.clear();
+    several.extend(of_each_ray(pairs).filter(|of_ray| of_ray.len() > 1).flatten());
+    hits.clear();
+    hits.resize(several.len(), Hit::MISS);
 }
 
 /// The pairs of each ray.
