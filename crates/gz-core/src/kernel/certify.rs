@@ -55,15 +55,7 @@ pub(crate) enum Verdict {
 
 /// The f64 test of a valid ray against a triangle.
 pub(crate) fn certify(ray: &GzRay, corners: &[GzCoord; 3]) -> Verdict {
-    match decide(&Solution::quick_of_one(ray, corners), ray, corners) {
-        Verdict::Unsure => decide(&Solution::of_one(ray, corners), ray, corners),
-        verdict => verdict,
-    }
-}
-
-/// What the errors of `solution` prove.
-#[inline(always)]
-fn decide(solution: &Solution<f64>, ray: &GzRay, corners: &[GzCoord; 3]) -> Verdict {
+    let solution = Solution::of_one(ray, corners);
     let signs = [solution.u(), solution.v, solution.w].map(Bounded::proved_sign);
     let (any_above, any_below) = (signs.contains(&1), signs.contains(&-1));
     if any_above && any_below {
