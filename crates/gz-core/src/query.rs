@@ -96,6 +96,20 @@ impl<'a> RayBatch<'a> {
 
     /// Rays with origins in f32, taken as they lie in memory. Neighbours should go the same way where they can; which of them have an origin
     /// or a direction in common need not be known.
+    ///
+    /// ```
+    /// use gz_core::{BruteForce, ClassMask, GzCoord, GzRay32, Hit, RayBatch, RayQuery, TriBuffer};
+    ///
+    /// let corners = [[0.0, 0.0, 5.0], [4.0, 0.0, 5.0], [0.0, 4.0, 5.0]].map(GzCoord::from_array);
+    /// let tris = TriBuffer::from_indexed(&corners, &[[0, 1, 2]])?;
+    /// let ray = |x: f32| GzRay32 { origin: [x, 1.0, 0.0].into(), tmin: 0.0, direction: GzCoord::Z, tmax: f32::INFINITY };
+    /// let rays = [ray(1.0), ray(3.5)];
+    ///
+    /// let mut hits = [Hit::MISS; 2];
+    /// BruteForce::new(&tris).closest_hits(&RayBatch::of_rays(&rays), ClassMask::ALL, &mut hits);
+    /// assert_eq!((hits[0].t, hits[1]), (5.0, Hit::MISS));
+    /// # Ok::<(), gz_core::TriError>(())
+    /// ```
     pub fn of_rays(rays: &'a [GzRay32]) -> Self {
         Self { len: rays.len(), given: Given::Rays(rays), leaves: None }
     }
