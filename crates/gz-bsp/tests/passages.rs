@@ -2,24 +2,13 @@
 
 mod common;
 
-use common::{Lcg, grid, rays, slivers, soup};
+use common::{Lcg, glazed, grid, rays, slivers, soup};
 use gz_bsp::{BspTree, MidpointTree};
 use gz_core::{
-    Attributes, BruteForce, ClassMask, GzCoord, GzRay, GzTri, Passages, PerRay, RayBatch, RayQuery, SimdLevel, TriBuffer,
-    TriClass, TriId,
+    BruteForce, ClassMask, GzCoord, GzRay, Passages, PerRay, RayBatch, RayQuery, SimdLevel, TriBuffer, TriClass, TriId,
 };
 
 const GLASS: ClassMask = ClassMask::only(TriClass::Glass);
-
-/// The same triangles, all of glass but every `opaque`th.
-fn glazed(tris: &TriBuffer, opaque: usize) -> TriBuffer {
-    let mut glazed = TriBuffer::with_attributes(Attributes::ALL, tris.len());
-    for (k, &positions) in tris.positions().iter().enumerate() {
-        let class = if k % opaque == 0 { TriClass::Opaque } else { TriClass::Glass };
-        glazed.push(&GzTri { positions, class, ..GzTri::default() }).unwrap();
-    }
-    glazed
-}
 
 fn passages(query: &dyn RayQuery, rays: &RayBatch<'_>) -> Passages {
     let mut passages = Passages { blocked: vec![true], met: Vec::new() };

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Lcg, grid, rays, slivers, soup};
+use common::{Lcg, glazed, grid, rays, slivers, soup};
 use gz_bsp::{BspTree, Midpoint, MidpointTree};
 use gz_core::{
     Attributes, BruteForce, ClassMask, GzCoord, GzRay, GzRay32, GzTri, Hit, NO_TRI, Passages, PerRay, RayBatch, RayQuery,
@@ -48,21 +48,11 @@ fn narrow(ray: &GzRay) -> GzRay32 {
     GzRay32 { origin: ray.origin.as_vec3(), tmin: ray.tmin, direction: ray.direction, tmax: ray.tmax }
 }
 
-/// Every other triangle of glass.
-fn glazed(tris: &TriBuffer) -> TriBuffer {
-    let mut glazed = TriBuffer::with_attributes(Attributes::ALL, tris.len());
-    for (k, &positions) in tris.positions().iter().enumerate() {
-        let class = if k % 2 == 0 { TriClass::Opaque } else { TriClass::Glass };
-        glazed.push(&GzTri { positions, class, ..GzTri::default() }).unwrap();
-    }
-    glazed
-}
-
 #[test]
 fn they_are_answered_as_when_told_property_by_property() {
     let (mut lcg, mut hits) = (Lcg(21), 0);
     for tris in [soup(&mut lcg, 300, 0.3), soup(&mut lcg, 3000, 0.06), grid(&mut lcg, 16), slivers(&mut lcg, 200)] {
-        let tris = glazed(&tris);
+        let tris = glazed(&tris, 2);
         let all: Vec<GzRay32> = rays(&mut lcg, &tris, 700).iter().map(narrow).collect();
         hits += compare(&tris, &all, None);
         // Bundles and packets that are not whole.
@@ -76,7 +66,7 @@ fn they_are_answered_as_when_told_property_by_property() {
 #[test]
 fn what_they_share_is_seen() {
     let (mut lcg, mut hits) = (Lcg(22), 0);
-    let tris = glazed(&soup(&mut lcg, 2000, 0.08));
+    let tris = glazed(&soup(&mut lcg, 2000, 0.08), 2);
     let all: Vec<GzRay32> = rays(&mut lcg, &tris, 400).iter().map(narrow).collect();
     let (eye, light) = (GzCoord::new(0.4, -3.0, 0.6), GzCoord::new(0.2, 1.0, -0.1));
     let bounds = tris.bounds();
@@ -139,7 +129,7 @@ fn coordinates_of_all_sizes_keep_their_bits() {
 #[test]
 fn they_may_leave_triangles() {
     let mut lcg = Lcg(24);
-    let tris = glazed(&grid(&mut lcg, 20));
+    let tris = glazed(&grid(&mut lcg, 20), 2);
     let all: Vec<GzRay32> = rays(&mut lcg, &tris, 500).iter().map(narrow).collect();
     // Only triangles that are not hit may be promised.
     let brute = BruteForce::new(&tris);

@@ -1,7 +1,7 @@
 //! Scenes and rays that look for trouble, from a small generator whose seed is in the test.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
-use gz_core::{GzCoord, GzRay, GzTri, TriBuffer};
+use gz_core::{Attributes, GzCoord, GzRay, GzTri, TriBuffer, TriClass};
 
 pub(crate) struct Lcg(pub(crate) u64);
 
@@ -22,6 +22,16 @@ pub(crate) fn buffer(triangles: impl IntoIterator<Item = [GzCoord; 3]>) -> TriBu
         tris.push(&GzTri { positions, ..GzTri::default() }).unwrap();
     }
     tris
+}
+
+/// The same triangles, all of glass but every `opaque`th.
+pub(crate) fn glazed(tris: &TriBuffer, opaque: usize) -> TriBuffer {
+    let mut glazed = TriBuffer::with_attributes(Attributes::ALL, tris.len());
+    for (k, &positions) in tris.positions().iter().enumerate() {
+        let class = if k % opaque == 0 { TriClass::Opaque } else { TriClass::Glass };
+        glazed.push(&GzTri { positions, class, ..GzTri::default() }).unwrap();
+    }
+    glazed
 }
 
 /// Small triangles anywhere in the unit cube.

@@ -1,5 +1,7 @@
 //! f64 numbers that round alike everywhere: one, or eight side by side.
 
+use super::lanes::columns;
+
 /// One f64 or several side by side: the operations that round alike everywhere, so that answers may depend on them to the bit.
 pub trait Doubles: Copy {
     /// `self + other`.
@@ -43,13 +45,8 @@ pub trait EightDoubles: Doubles {
     /// The coordinates of points: lane `i` of result `k` is `points[i][k]`.
     #[inline(always)]
     fn unzip3(points: &[[f64; 3]; 8]) -> [Self; 3] {
-        let mut rows = [[0.0; 8]; 3];
-        for (i, point) in points.iter().enumerate() {
-            for (row, x) in rows.iter_mut().zip(point) {
-                row[i] = *x;
-            }
-        }
-        [Self::load(&rows[0]), Self::load(&rows[1]), Self::load(&rows[2])]
+        let [x, y, z] = &columns(points);
+        [Self::load(x), Self::load(y), Self::load(z)]
     }
 }
 

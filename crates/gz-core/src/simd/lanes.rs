@@ -70,25 +70,13 @@ pub trait Lanes<const N: usize>: Copy {
     /// The coordinates of points: lane `i` of result `k` is `points[i][k]`.
     #[inline(always)]
     fn unzip3(points: &[[f32; 3]; N]) -> [Self; 3] {
-        let mut rows = [[0.0; N]; 3];
-        for (i, point) in points.iter().enumerate() {
-            for (row, x) in rows.iter_mut().zip(point) {
-                row[i] = *x;
-            }
-        }
-        [Self::load(&rows[0]), Self::load(&rows[1]), Self::load(&rows[2])]
+        load3(&columns(points))
     }
 
     /// Lane `i` of result `k` is `rows[i][k]`.
     #[inline(always)]
     fn unzip8(rows: &[[f32; 8]; N]) -> [Self; 8] {
-        let mut columns = [[0.0; N]; 8];
-        for (i, row) in rows.iter().enumerate() {
-            for (column, x) in columns.iter_mut().zip(row) {
-                column[i] = *x;
-            }
-        }
-        let [a, b, c, d, e, f, g, h] = &columns;
+        let [a, b, c, d, e, f, g, h] = &columns(rows);
         [Self::load(a), Self::load(b), Self::load(c), Self::load(d), Self::load(e), Self::load(f), Self::load(g), Self::load(h)]
     }
 
@@ -99,6 +87,18 @@ pub trait Lanes<const N: usize>: Copy {
         self.store(&mut out);
         out
     }
+}
+
+/// Rows of numbers as columns.
+#[inline(always)]
+pub(super) fn columns<T: Copy + Default, const N: usize, const M: usize>(rows: &[[T; M]; N]) -> [[T; N]; M] {
+    let mut columns = [[T::default(); N]; M];
+    for (i, row) in rows.iter().enumerate() {
+        for (column, x) in columns.iter_mut().zip(row) {
+            column[i] = *x;
+        }
+    }
+    columns
 }
 
 /// Three rows of numbers, such as the coordinates of points.

@@ -1,6 +1,6 @@
 //! Eight f32 in an AVX register.
 
-use super::{Avx2, four};
+use super::{Avx2, four, turned};
 use crate::simd::lanes::Lanes;
 use std::arch::x86_64::*;
 
@@ -152,7 +152,7 @@ impl Lanes<8> for Avx2 {
         let mut out = [Self(call!(_mm256_setzero_ps())); 8];
         for half in 0..2 {
             // SAFETY: of the 64 numbers of `rows` four at a time are read, a half of rows i and i + 4 each; features as above.
-            let [a, b, c, d] = unsafe {
+            let rows = unsafe {
                 let start = start.add(4 * half);
                 [
                     _mm256_loadu2_m128(start.add(32), start),
@@ -161,12 +161,11 @@ impl Lanes<8> for Avx2 {
                     _mm256_loadu2_m128(start.add(56), start.add(24)),
                 ]
             };
-            let (ab, cd) = (call!(_mm256_unpacklo_ps(a, b)), call!(_mm256_unpacklo_ps(c, d)));
-            out[4 * half] = Self(call!(_mm256_shuffle_ps::<0x44>(ab, cd)));
-            out[4 * half + 1] = Self(call!(_mm256_shuffle_ps::<0xee>(ab, cd)));
-            let (ab, cd) = (call!(_mm256_unpackhi_ps(a, b)), call!(_mm256_unpackhi_ps(c, d)));
-            out[4 * half + 2] = Self(call!(_mm256_shuffle_ps::<0x44>(ab, cd)));
-            out[4 * half + 3] = Self(call!(_mm256_shuffle_ps::<0xee>(ab, cd)));
+            let [a, b, c, d] = turned(rows);
+            out[4 * half] = Self(a);
+            out[4 * half + 1] = Self(b);
+            out[4 * half + 2] = Self(c);
+            out[4 * half + 3] = Self(d);
         }
         out
     }

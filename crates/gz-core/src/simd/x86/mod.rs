@@ -131,20 +131,26 @@ fn prefetch<T>(what: &T) {
     }
 }
 
+/// Four rows of four as four columns, in each half: number k of half h of result i is number i of half h of row k.
+#[inline(always)]
+fn turned([a, b, c, d]: [__m256; 4]) -> [__m256; 4] {
+    let (ab, ab_high) = (call!(_mm256_unpacklo_ps(a, b)), call!(_mm256_unpackhi_ps(a, b)));
+    let (cd, cd_high) = (call!(_mm256_unpacklo_ps(c, d)), call!(_mm256_unpackhi_ps(c, d)));
+    [
+        call!(_mm256_shuffle_ps::<0x44>(ab, cd)),
+        call!(_mm256_shuffle_ps::<0xee>(ab, cd)),
+        call!(_mm256_shuffle_ps::<0x44>(ab_high, cd_high)),
+        call!(_mm256_shuffle_ps::<0xee>(ab_high, cd_high)),
+    ]
+}
+
 /// Four columns as rows of four.
 #[inline(always)]
 fn write_rows([a, b, c, d]: [Avx2; 4], to: &mut [[f32; 4]; 8]) {
     // SAFETY: each row of `to` is written once, 16 bytes, unaligned; the features are there where the caller was reached.
     unsafe {
-        let (ab, ab_high) = (_mm256_unpacklo_ps(a.0, b.0), _mm256_unpackhi_ps(a.0, b.0));
-        let (cd, cd_high) = (_mm256_unpacklo_ps(c.0, d.0), _mm256_unpackhi_ps(c.0, d.0));
         // Row k beside row k + 4.
-        let rows = [
-            _mm256_shuffle_ps::<0x44>(ab, cd),
-            _mm256_shuffle_ps::<0xee>(ab, cd),
-            _mm256_shuffle_ps::<0x44>(ab_high, cd_high),
-            _mm256_shuffle_ps::<0xee>(ab_high, cd_high),
-        ];
+        let rows = turned([a.0, b.0, c.0, d.0]);
         for k in 0..4 {
             _mm_storeu_ps(to[k].as_mut_ptr(), _mm256_castps256_ps128(rows[k]));
             _mm_storeu_ps(to[k + 4].as_mut_ptr(), _mm256_extractf128_ps::<1>(rows[k]));
@@ -161,15 +167,7 @@ fn transpose(rows: &[&[f32; 9]; 8]) -> [Avx2; 9] {
         for (r, row) in r.iter_mut().zip(rows) {
             *r = _mm256_loadu_ps(row.as_ptr());
         }
-        // Pairs, fours, halves.
-        let (a, b) = (_mm256_unpacklo_ps(r[0], r[1]), _mm256_unpackhi_ps(r[0], r[1]));
-        let (c, d) = (_mm256_unpacklo_ps(r[2], r[3]), _mm256_unpackhi_ps(r[2], r[3]));
-        let (e, f) = (_mm256_unpacklo_ps(r[4], r[5]), _mm256_unpackhi_ps(r[4], r[5]));
-        let (g, h) = (_mm256_unpacklo_ps(r[6], r[7]), _mm256_unpackhi_ps(r[6], r[7]));
-        let (s0, s1) = (_mm256_shuffle_ps::<0x44>(a, c), _mm256_shuffle_ps::<0xee>(a, c));
-        let (s2, s3) = (_mm256_shuffle_ps::<0x44>(b, d), _mm256_shuffle_ps::<0xee>(b, d));
-        let (s4, s5) = (_mm256_shuffle_ps::<0x44>(e, g), _mm256_shuffle_ps::<0xee>(e, g));
-        let (s6, s7) = (_mm256_shuffle_ps::<0x44>(f, h), _mm256_shuffle_ps::<0xee>(f, h));
+        let ([s0, s1, s2, s3], [s4, s5, s6, s7]) = (turned([r[0], r[1], r[2], r[3]]), turned([r[4], r[5], r[6], r[7]]));
         [
             Avx2(_mm256_permute2f128_ps::<0x20>(s0, s4)),
             Avx2(_mm256_permute2f128_ps::<0x20>(s1, s5)),
